@@ -56,7 +56,7 @@ std::vector<ModelInfo>& all_models() {
   return models;
 }
 
-// What makes each of the added models. Never destroyed: they may hold what ends before this
+// Factories of the added models. Never destroyed: they may hold what ends before this
 // library.
 std::array<MakeModel, kMostOwnModels>& own_makers() {
   static auto* const makers = new std::array<MakeModel, kMostOwnModels>;

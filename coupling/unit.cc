@@ -78,13 +78,17 @@ std::optional<Powers> factor(std::string word, int sign) {
 
 // Unicode's signs, and powers as other programs write them, as ours: "µm", "kg/m³", "kg/m**3".
 std::string plain(std::string text) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> signs{{{"\u00b5", "u"},
-                                                                                {"\u03bc", "u"},
-                                                                                {"\u00b2", "2"},
-                                                                                {"\u00b3", "3"},
-                                                                                {"\u207b", "-"},
-                                                                                {"\u00b7", " "},
-                                                                                {"**", "^"}}};
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> signs{{{"\u00b5", "u"},
+                                                                                 {"\u03bc", "u"},
+                                                                                 {"\u00b2", "2"},
+                                                                                 {"\u00b3", "3"},
+                                                                                 {"\u207b", "-"},
+                                                                                 {"\u00b7", " "},
+                                                                                 {"**", "^"},
+                                                                                 // of Latin-1
+                                                                                 {"\xb5", "u"},
+                                                                                 {"\xb2", "2"},
+                                                                                 {"\xb3", "3"}}};
   for (const auto& [theirs, ours] : signs)
     for (std::size_t at = 0; (at = text.find(theirs, at)) != std::string::npos;)
       text.replace(at, theirs.size(), ours);

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 
 struct Given {
   ImportOptions options;
-  std::string output, gravity, fixed, load;
+  std::string output, gravity, fixed, load, flip;
   std::vector<std::string> walls, steps, periodic;
   std::optional<double> friction;
   bool add = false;
@@ -89,6 +89,17 @@ void parse(Given& given) {
     split(list, ',', values);
     options.fixed_values.assign(values.begin(), values.end());
   }
+  if (given.flip == "all" || given.flip == "true") {
+    options.flip_forces = true;
+  } else if (given.flip == "pairs") {
+    options.flip_pairs = true;
+  } else if (given.flip == "walls") {
+    options.flip_walls = true;
+  } else if (!given.flip.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "--flip-forces={}: allowed: --flip-forces, --flip-forces=pairs, --flip-forces=walls",
+        given.flip));
+  }
   if (!given.load.empty()) {
     const std::size_t equals = given.load.find('=');
     if (equals == std::string::npos)
@@ -116,7 +127,8 @@ std::string tensor_text(const Eigen::Matrix3d& m, int dim) {
   return text;
 }
 
-void show(const ImportedSnapshot& imported, bool default_gravity, RepeatedWarnings& repeated) {
+void show(const ImportedSnapshot& imported, bool default_gravity, RepeatedWarnings& repeated,
+          RepeatedWarnings& notes) {
   const dem::Snapshot& s = imported.snapshot;
   std::size_t fixed = 0, at_walls = 0;
   for (const auto& g : s.grains) fixed += g.fixed ? 1 : 0;
@@ -136,7 +148,8 @@ void show(const ImportedSnapshot& imported, bool default_gravity, RepeatedWarnin
   };
   if (const std::string text = strange_units(s); !text.empty()) warn(text);
   for (const std::string& text : imported.warnings) warn(text);
-  for (const std::string& text : imported.notes) say("  {}\n", text);
+  for (const std::string& text : imported.notes)
+    if (notes.is_first(imported.group, text)) say("  {}\n", text);
   if (imported.left_out > 0)
     say("  left out: {} contacts across periodic boundaries\n", imported.left_out);
   if (imported.idle > 0)
@@ -220,7 +233,9 @@ void add_import(CLI::App& app, Action& action) {
   command->add_option("--ids", o.ids_file,
                       "table id,original: grains get the original ids (of `export --to lammps`)");
   command->add_flag("--without-contacts", o.without_contacts, "grains alone are enough");
-  command->add_flag("--flip-forces", o.flip_forces, "the files' forces act on j: turn them all");
+  command->add_flag("--flip-forces{all}", given->flip,
+                    "the files' forces act on j: turn them all; --flip-forces=pairs, =walls turns "
+                    "those between grains, or with walls, alone");
   command->add_flag("--leave-out-distant", o.leave_out_distant,
                     "leave out contacts across periodic boundaries, and the cell");
   command->callback([=, &action] {
@@ -250,7 +265,7 @@ void add_import(CLI::App& app, Action& action) {
         if (all > 1 && std::chrono::steady_clock::now() - start > patience)
           progress.show([&] { return fmt::format("{}: {} of {}", phase, done, all); });
       };
-      RepeatedWarnings repeated;
+      RepeatedWarnings repeated, notes;
       import_snapshots(options, [&](ImportedSnapshot&& imported) {
         progress.end();
         std::string& group = imported.group;
@@ -268,7 +283,7 @@ void add_import(CLI::App& app, Action& action) {
         file.write_with([&](const std::string& temporary) {
           dem::write_snapshot(temporary, group, imported.snapshot);
         });
-        show(imported, !options.gravity, repeated);
+        show(imported, !options.gravity, repeated, notes);
       });
       for (const std::string& line : repeated.lines()) note("warning: {}", line);
       file.commit();

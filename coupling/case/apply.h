@@ -28,7 +28,7 @@ Assignment written(const Draft& draft, const std::string& path);
 /// name), a wrong type or a value out of range.
 void apply(Draft& draft, const Assignment& assignment);
 
-/// What single keys and tables of models say wrongly, of those that apply() took: without meaning
+/// Adds the mistakes of single keys and of tables of models, of those that apply() took: without meaning
 /// for the study, unknown models and parameters.
 void check_keys(const Draft& draft, MistakeList& mistakes);
 

@@ -75,7 +75,7 @@ Case read_case(const std::string& file, bool quick, const Overrides& overrides) 
   Draft with_quick = draft;
   put(with_quick, fast, mistakes);
   put(quick ? with_quick : draft, set, mistakes);
-  // What single keys say wrongly is told at once; what follows from several only without that.
+  // Mistakes of single keys are told together. Those of several keys are told where there is none.
   if (known_study) {
     check_keys(with_quick, mistakes);
     if (!quick) check_keys(draft, mistakes);

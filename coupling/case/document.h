@@ -12,14 +12,14 @@ using Scalar = std::variant<bool, std::int64_t, double, std::string>;
 
 struct Assignment {
   std::string path;           ///< "material.friction"; for an empty table its own path
-  std::string origin;         ///< "cases/x.toml:12" or "--set"
+  std::string origin;         ///< "cases/x.toml:12", "--set" or another option
   std::vector<Scalar> items;  ///< one for a single value
   bool list = false;
   bool table = false;  ///< a table without keys
   bool other = false;  ///< a date, a list of lists: nothing that a key takes
   std::string text;    ///< as written on the command line, or a description of the value
 
-  bool from_command_line() const { return origin == "--set"; }
+  bool from_command_line() const { return origin.starts_with("--"); }
 };
 
 /// Most bytes of a case file, values in it, parts of a dotted key, levels of lists and tables

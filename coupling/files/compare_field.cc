@@ -203,7 +203,7 @@ Report page_of(const CompareRequest& request, const Observations& observed,
   return pile_report(page);
 }
 
-// What measured values carry, as lines and as doubts of the verdict.
+// Returns a line for each share that measured values carry, and adds the doubts to the verdict.
 std::vector<std::string> carried_lines(const NamedFields& fields, Judgement& judgement) {
   std::vector<std::string> out;
   for (const auto& [name, field] : fields) {

@@ -188,9 +188,25 @@ Overrides overrides_of(const FitRequest& request) {
   return set;
 }
 
+// The option of fit that sets a key: fit.width_diameters has --width-diameters.
+std::string option_of(const std::string& path) {
+  if (path == "fit.models") return "--model";
+  std::string name = path.substr(path.find('.') + 1);
+  std::replace(name.begin(), name.end(), '_', '-');
+  return "--" + name;
+}
+
+// The first `of_set` are of --set; the others have options of their own, which their mistakes name.
+std::vector<Assignment> assignments_of(const Overrides& overrides, std::size_t of_set) {
+  std::vector<Assignment> out = parse_overrides(overrides);
+  for (std::size_t k = of_set; k < out.size(); ++k) out[k].origin = option_of(out[k].path);
+  return out;
+}
+
 // Section [fit] of a case file (other sections do not count) with overrides. Throws
 // std::invalid_argument "FILE:LINE: fit.KEY: ...".
-FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides) {
+FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides,
+                        std::size_t of_set) {
   Draft draft;
   draft.file = case_file;
   draft.value.study = "pile-fit";
@@ -201,7 +217,7 @@ FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides
       mistakes.attempt([&] { apply(draft, a); });
     }
   }
-  for (const Assignment& a : parse_overrides(overrides)) {
+  for (const Assignment& a : assignments_of(overrides, of_set)) {
     mistakes.attempt([&] {
       if (a.path.compare(0, 4, "fit.") != 0) {
         reject(a, a.path, "found another section, allowed: fit");
@@ -234,8 +250,8 @@ void take_what_was_measured(const Field& field, bool of_case, const Overrides& o
 }
 
 // A field was averaged before.
-void require_no_width(const Overrides& overrides) {
-  for (const Assignment& a : parse_overrides(overrides)) {
+void require_no_width(const Overrides& overrides, std::size_t of_set) {
+  for (const Assignment& a : assignments_of(overrides, of_set)) {
     if (a.path != "fit.width_diameters" && a.path != "fit.kernel") continue;
     reject(a, a.path, "found a width, but the input is a field, which was averaged over its own");
   }
@@ -248,9 +264,10 @@ FitOutcome fit_files(const FitRequest& request) {
   value.study = "pile-fit";
   const Overrides overrides = overrides_of(request);
   value.get<FitSetup>() =
-      read_fit_setup(request.case_file.empty() ? "" : find_case(request.case_file), overrides);
+      read_fit_setup(request.case_file.empty() ? "" : find_case(request.case_file), overrides,
+                     request.overrides.size());
   Chosen chosen = choose(request.inputs);
-  if (request.field || !chosen.field.empty()) require_no_width(overrides);
+  if (request.field || !chosen.field.empty()) require_no_width(overrides, request.overrides.size());
   chosen.heaps.insert(chosen.heaps.end(), request.heaps.begin(), request.heaps.end());
   const std::string first = first_name(request);
   std::vector<std::string> inputs{chosen.field_file};

@@ -43,6 +43,7 @@ constexpr double kClear = 2, kMostTurned = 0.75;
 constexpr long kEnoughShears = 3;
 
 constexpr double kSamePlace = 1e-9;   // of h
+constexpr double kOffHeight = 0.01;   // of h: above the surface of a heap, or below its base
 constexpr double kSmallWidth = 1e-3;  // of h: cells of which nothing is told
 constexpr double kSteepest = 80;      // degrees
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -107,6 +108,16 @@ class Reader {
   }
 
   bool has(const std::string& name) const { return find(name) != nullptr; }
+  /// Whether it has columns of other names, one of which may be a column that is missing.
+  bool has_others() const {
+    const auto known = [](const Heading& h) {
+      const std::string plain = plain_column_name(h.name);
+      for (const char* name : {"x", "y", "z", "r", "component", "value", "error"})
+        if (plain == name) return true;
+      return plain.empty();
+    };
+    return !std::all_of(headings_.begin(), headings_.end(), known);
+  }
   /// The unit of a column; empty: none, or no such column.
   std::string unit(const std::string& name) const {
     const Heading* found = find(name);
@@ -272,6 +283,54 @@ Eigen::Index places_outside(const Field& field, const MeasuredHeap& heap) {
   return (x < -kOutside * heap.left || x > kOutside * heap.right).count();
 }
 
+// Places above the surface of the heap or layer, or below its base. All values at the surface of a
+// layer are those of its load.
+struct OffHeights {
+  Eigen::Index above = 0, below = 0;
+  Eigen::Index all() const { return above + below; }
+};
+
+OffHeights off_heights(const Field& field, const std::optional<MeasuredHeap>& heap) {
+  const double h = field.number("h");
+  const Eigen::Index up = field.points.cols() - 1;
+  OffHeights out;
+  for (Eigen::Index k = 0; k < field.points.rows(); ++k) {
+    const double x = field.points(k, 0), height = field.points(k, up);
+    const double away = up == 2 ? std::hypot(x, field.points(k, 1)) : std::abs(x);
+    const double foot = heap ? (x < 0 ? heap->left : heap->right) : 0;
+    const bool above =
+        heap ? height > -h * std::min(1.0, away / foot) + kOffHeight * h : height > -kSamePlace * h;
+    out.above += above;
+    out.below += height < -(1 + kOffHeight) * h;
+  }
+  return out;
+}
+
+std::string of_heights(const Field& field, const OffHeights& off, bool heap,
+                       const char* allowed = "") {
+  const double h = field.number("h");
+  const Eigen::Index up = field.points.cols() - 1;
+  const char axis = "xyz"[up];
+  const char* where = "above the surface or below the base";
+  if (off.below == 0) where = heap ? "above the heap's surface" : "at or above the surface";
+  if (off.above == 0) where = "below the base";
+  std::string hint;
+  if (field.points.col(up).minCoeff() >= 0) {
+    hint = fmt::format(": are heights counted from the base? {} - {}", axis, h);
+  } else if (off.above == 0) {
+    hint = ": is the unit of heights right?";
+  }
+  return fmt::format("{} of {} places lie {}{}; {} is 0 at the {}, -{} on the base{}", off.all(),
+                     field.points.rows(), where, allowed, axis, heap ? "apex" : "surface", h, hint);
+}
+
+void refuse_heights(const Field& field, const std::optional<MeasuredHeap>& heap) {
+  const OffHeights off = off_heights(field, heap);
+  if (4 * off.all() > field.points.rows())
+    throw std::invalid_argument(
+        of_heights(field, off, heap.has_value(), ", allowed: a quarter of them"));
+}
+
 std::string of_outside(const Field& field, const MeasuredHeap& heap, Eigen::Index outside) {
   return fmt::format("{} of {} places lie outside the heap, whose feet are at {:.3g} and {:.3g} m",
                      outside, field.points.rows(), -heap.left, heap.right);
@@ -298,6 +357,7 @@ void refuse_impossible(const Field& field) {
         of_outside(field, *heap, outside) +
         ", allowed: a quarter of them; correct the unit of x, or its origin: 0 is below the apex");
   }
+  refuse_heights(field, heap);
   refuse_narrow(field, *heap);
   const std::optional<CarriedShare> carried = carried_share(field);
   if (!carried) return;
@@ -357,7 +417,7 @@ Field measured_field(const MeasuredRequest& given) {
   const bool radial = columns.has("r") && !columns.has("x");
   const Measure x = columns.length(radial ? "r" : "x", true), side = columns.length("y", false),
                 up = columns.length("z", false), value = columns.stress("value", true),
-                error = columns.stress("error", true);
+                error = columns.stress("error", columns.has_others());
   const ForeignColumn component = columns.need("component");
   // By place, from left to right, lowest first.
   std::map<std::array<double, 3>, Place> found;
@@ -372,7 +432,7 @@ Field measured_field(const MeasuredRequest& given) {
     const auto round = [&](double length) { return std::round(length / h / kSamePlace); };
     const auto [name, sign] = component_of(row, row.text(component), request.dim);
     Value one{sign * value.of(row), kNan, row.line};
-    if (!row.empty(error.column)) one.error = error.of(row);
+    if (error && !row.empty(error.column)) one.error = error.of(row);
     if (one.error <= 0)
       row.refuse(
           fmt::format("column error: found {}, allowed: above 0, or empty where it is unknown",
@@ -422,6 +482,7 @@ Field measured_field(const MeasuredRequest& given) {
   about["frame"] = request.geometry;
   if (request.geometry == "layer") {
     if (!std::isnan(request.load)) about["F"] = request.load;
+    refuse_heights(out, std::nullopt);
     return out;
   }
   about["lengths"] = "m";
@@ -463,6 +524,8 @@ std::vector<std::string> measured_doubts(const Field& field) {
   const std::optional<MeasuredHeap> heap = measured_heap(field);
   const std::optional<CarriedShare> carried = carried_share(field);
   std::vector<std::string> out;
+  const OffHeights off = field.is_measured() ? off_heights(field, heap) : OffHeights{};
+  if (off.all() > 0) out.push_back(of_heights(field, off, heap.has_value()));
   if (!heap) {
     if (carried) out.push_back(share_doubt(*carried));
     std::erase(out, "");

@@ -126,7 +126,7 @@ std::optional<CarriedShare> share_of_weight(const Field& field, const MeasuredHe
   return out;
 }
 
-// Of a half plane or half space at the depth d: Flamant, Boussinesq.
+// A half plane's or half space's share at the depth d: Flamant, Boussinesq.
 double half_body(double load, double x, double d, int dim) {
   return dim == 3
              ? 3 * load * std::pow(d, 3) / (2 * std::numbers::pi) * std::pow(x * x + d * d, -2.5)

@@ -54,7 +54,7 @@ std::optional<CarriedShare> carried_share(const Field& field);
 
 /// "the pressures on the base carry 0.83 +- 0.02 of the weight above them".
 std::string share_text(const CarriedShare& share);
-/// The same with what to do, where the share is outside of what is warned of; else empty.
+/// share_text() with what to do, for a share that is warned of; else empty.
 std::string share_doubt(const CarriedShare& share);
 
 }  // namespace grainfield::coupling

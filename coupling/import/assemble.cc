@@ -26,8 +26,9 @@ namespace {
 
 // Median radii from the middle of the packing: a warning, and a refusal.
 constexpr double kFar = 1e6, kTooFar = 1e9;
-// Radii along z that are rounding.
-constexpr double kFlat = 1e-9;
+// Radii along an axis that are rounding, also of numbers with four bytes.
+constexpr double kFlat = 1e-6;
+constexpr double kWide = 30;  // packings that fit into a periodic cell: one in another unit
 // Between a volume that is told and that of the radius: what three digits leave.
 constexpr double kSameVolume = 1e-2;
 
@@ -36,22 +37,48 @@ constexpr double kSameVolume = 1e-2;
 void Assembly::settle_dimension() {
   dem::Snapshot& s = out_.snapshot;
   const double z = rows_.front().grain.position.z();
-  // Rounding leaves a plane packing some digits along z.
-  const auto off_plane = [&](const GrainRow& row) {
-    return std::abs(row.grain.position.z() - z) > kFlat * row.grain.radius;
+  // Rounding leaves a plane packing some digits along an axis.
+  const auto off_plane = [&](Eigen::Index axis, double size) {
+    const double first = rows_.front().grain.position[axis];
+    return std::find_if(rows_.begin(), rows_.end(), [&, axis, size](const GrainRow& row) {
+      const double radius = std::max(row.grain.radius, row.grain.axes.maxCoeff());
+      return std::abs(row.grain.position[axis] - first) > size * radius;
+    });
   };
-  const auto other = std::find_if(rows_.begin(), rows_.end(), off_plane);
+  const auto other = off_plane(2, kFlat);
+  const bool across =
+      rows_.size() > 2 && other != rows_.end() && off_plane(1, kFlat) == rows_.end();
+  const std::string swap =
+      " (every y is the same: --dim 2 --column y=z --column z=y --column fy=fz --column fz=fy ... "
+      "import a packing in the xz-plane)";
   s.dim = options_.dim != 0 ? options_.dim : has_z_ && other != rows_.end() ? 3 : 2;
   if (const auto& told = s.dim == 2 ? space_units_ : plane_units_; !told.empty())
     throw std::invalid_argument(
-        fmt::format("{0} in a packing in {1}D, allowed: density in kg/m{1}, volume in m{1}",
-                    told.front(), s.dim));
+        fmt::format("{} in a packing in {}D, allowed: {}", told.front(), s.dim,
+                    s.dim == 2 ? "density in kg/m2, volume in m2, mass in kg or kg/m"
+                               : "density in kg/m3, volume in m3, mass in kg"));
   if (s.dim == 2 && other != rows_.end())
     throw std::invalid_argument(fmt::format(
         "{}: grain {} has z = {}, grain {} has z = {}; 2D needs one z: --dim 3 for grains "
-        "in space",
+        "in space{}",
         other->source.where(), other->grain.id, other->grain.position.z(), rows_.front().grain.id,
-        z));
+        z, across ? swap : ""));
+  if (across && options_.dim == 0)
+    out_.notes.push_back(
+        fmt::format("{}: the centres lie in a plane, and are read in 3D{}", first_file_, swap));
+  if (s.dim == 2 && has_z_ && off_plane(2, 0) != rows_.end())
+    out_.notes.push_back(fmt::format(
+        "{}: the places differ along z by less than a millionth of a radius: read as a plane",
+        first_file_));
+  const GrainRow& first = rows_.front();
+  if (s.dim == 2 && first.density > 0 && first.sphere_density)
+    out_.notes.push_back(
+        fmt::format("{}: the density is that of spheres, {:g} kg/m3, in the plane, too",
+                    first_file_, first.density));
+  else if (s.dim == 2 && options_.dim == 0 && has_z_ && first.density > 0)
+    out_.notes.push_back(fmt::format(
+        "{}: every z is the same: read as disks, whose density is {:g} kg/m2 (--dim 3: spheres)",
+        first_file_, first.density));
   const auto polygon = std::find_if(rows_.begin(), rows_.end(),
                                     [](const GrainRow& row) { return !row.grain.outline.empty(); });
   const auto solid = std::find_if(rows_.begin(), rows_.end(),
@@ -122,11 +149,14 @@ void Assembly::complete(GrainRow& row) const {
   }
   if (row.volume_ten != 0) g.volume *= std::pow(10.0, out_.snapshot.dim * row.volume_ten);
   const bool round = g.outline.empty() && g.axes.isZero(0);
-  if (round && g.volume > 0 && std::abs(g.volume - volume) > kSameVolume * volume)
+  if (g.volume > 0 && std::abs(g.volume - volume) > kSameVolume * volume)
     throw std::invalid_argument(fmt::format(
-        "{}: grain {}: found volume {:g} and radius {:g} m, which makes {:g}, allowed: those that "
-        "fit each other; --column volume=0 leaves the column out (the cell of a tessellation is no grain's)",
-        row.source.where(), g.id, g.volume, g.radius, volume));
+        "{}: grain {}: found volume {:g} and {}, which makes {:g}, allowed: those that "
+        "agree; --column volume=0 leaves the column out (the cell of a tessellation is no grain's)",
+        row.source.where(), g.id, g.volume,
+        round ? fmt::format("radius {:g} m", g.radius)
+              : fmt::format("a shape that reaches {:g} m from its centre", g.radius),
+        volume));
   if (g.volume == 0) g.volume = volume;
   // In 2D a density may be one of spheres; that of a dump is.
   const double as_spheres = 4.0 / 3 * std::numbers::pi * g.radius * g.radius * g.radius;
@@ -136,7 +166,7 @@ void Assembly::complete(GrainRow& row) const {
       (!g.outline.empty() || contradict(g.mass, row.told_density * as_spheres)))
     throw std::invalid_argument(fmt::format(
         "{}: grain {}: found mass {:g} kg and density {:g}, which makes {:g} kg, allowed: "
-        "those that fit each other, or one of the columns",
+        "those that agree, or one of the columns",
         row.source.where(), g.id, g.mass, row.told_density, row.told_density * g.volume));
   if (!row.has_inertia) g.inertia = g.mass * gyration;
   if (out_.snapshot.dim == 2) {
@@ -262,6 +292,25 @@ void Assembly::check_places() {
         far, grains.size(), kFar, first));
 }
 
+void Assembly::check_widths() {
+  const dem::Snapshot& s = out_.snapshot;
+  for (Eigen::Index a = 0; a < s.dim; ++a) {
+    if (!s.cell.periodic[static_cast<std::size_t>(a)]) continue;
+    double low = s.grains.front().position[a], high = low, radius = 0;
+    for (const dem::Grain& g : s.grains) {
+      low = std::min(low, g.position[a]);
+      high = std::max(high, g.position[a]);
+      radius = std::max(radius, g.radius);
+    }
+    const double packing = high - low + 2 * radius, width = s.cell.edges.col(a).norm();
+    if (width > kWide * packing)
+      out_.warnings.push_back(fmt::format(
+          "the periodic cell is {:.3g} m wide along {}, {:.3g} times as wide as the packing in it: "
+          "is it in the unit of the places (--periodic x=0:\"5 mm\")?",
+          width, "xyz"[a], width / packing));
+  }
+}
+
 void Assembly::settle_walls() {
   dem::Snapshot& s = out_.snapshot;
   dem::Vec3 middle(0, 0, 0);
@@ -305,6 +354,7 @@ void Assembly::settle() {
   join_repeated_grains();
   for (GrainRow& row : rows_) s.grains.push_back(std::move(row.grain));
   check_places();
+  check_widths();
   if (format_.copies_have_numbers) sort_for_copies();
   rows_ = {};
   const std::size_t tables = s.walls.size();
@@ -313,7 +363,7 @@ void Assembly::settle() {
     ContactRow row{{}, force.source};
     row.contact.i = index_of(force.grain);
     row.contact.j = -1 - static_cast<std::int64_t>(tables + force.choice);
-    row.contact.force = (options_.flip_forces ? -1 : 1) * force.force;
+    row.contact.force = options_.sign_of(true) * force.force;
     row.contact.point = force.point;
     row.contact.friction = options_.friction;
     set_spring(std::nullopt, row.contact);

@@ -76,15 +76,24 @@ class Assembly {
     bool again = false;   ///< is in a table before, too
     bool copied = false;  ///< one of the two was told by a copy's number
     int facet = 0;        ///< of the wall, as facet_of() has it
+    std::optional<double> told_fn = {},
+                          told_ft = {};  ///< sizes that the row gives beside the whole force
     [[noreturn]] void refuse(const std::string& what) const;
   };
   struct Tally {                                              ///< of contacts
     std::vector<std::pair<std::int64_t, std::int64_t>> idle;  ///< no force, and a gap
     long long left_out = 0;                                   ///< distant
     long long far = 0;                                        ///< forces across gaps
-    long long pointed = 0, off_surface = 0;                   ///< round pairs with points; far off
+    long long below_digits = 0;  ///< forces across gaps that the digits of places leave open
+    long long pointed = 0, off_surface = 0;  ///< round pairs with points; far off
     std::string first_off;
     std::string first_far;
+    long long sized = 0, off_size = 0;  ///< rows with sizes beside the force; contradicting it
+    double tangential = 0, told_tangential = 0;  ///< N, sums over these rows
+    std::string first_off_size;
+    long long shaped = 0, off_shape = 0;  ///< points on outlines and superellipsoids; far off
+    std::string first_off_shape;
+    long long ft_above = 0, ft_below = 0;  ///< sizes ft without a direction, in 2D
   };
 
   /// A flat wall's contacts.
@@ -93,6 +102,11 @@ class Assembly {
     long long wrong = 0;  ///< of them, those whose grain is not on the side of the normal
     long long deep = 0;   ///< of these, those on it, but with their centre too near the wall
     std::string first_deep;
+    long long far = 0;   ///< contacts that bear a force across a gap
+    double widest = 0;   ///< of these gaps, m
+    long long sunk = 0;  ///< round grains that overlap it by much of their radius
+    double deepest = 0;  ///< of these overlaps, m
+    double lowest = std::numeric_limits<double>::infinity();  ///< gap of the lowest grain, m
     dem::Vec3 towards{0, 0, 0};  ///< sum of the directions from their points to their grains
   };
   /// Of the normals that the files give.
@@ -116,11 +130,15 @@ class Assembly {
   };
   PlaceColumns place_columns(const ForeignTable& table, const TableColumns& columns) const;
   ShapeColumns shape_columns(const TableColumns& columns) const;
-  void read_place(const PlaceColumns& columns, const ForeignRow& row, GrainRow& out) const;
+  void read_place(const PlaceColumns& columns, const ForeignRow& row, GrainRow& out);
   void read_shape(const ShapeColumns& columns, const ForeignRow& row, dem::Grain& grain) const;
   /// Warns of columns that tell a shape which is not taken.
-  void warn_of_shapes(const ForeignTable& table, const TableColumns& columns,
-                      const ShapeColumns& taken);
+  void warn_of_shapes(const ForeignTable& table, const TableColumns& columns, bool taken);
+  /// Says what became of a table's columns, once all were looked up; throws where some of them have
+  /// a unit and others of their kind none.
+  void tell_columns(const ForeignTable& table, const TableColumns& columns, TableKind kind);
+  /// Throws naming all columns that are missing where several are.
+  void require_columns_of_grains(const TableColumns& columns) const;
   ForeignColumn find_id(const ForeignTable& table, const TableColumns& columns);
   /// A column of molecules: its values, where they are numbers above 0.
   struct Bodies {
@@ -128,9 +146,15 @@ class Assembly {
     std::set<std::string, std::less<>> met;
     bool repeated = false;
     void add(const ForeignRow& row);
+    /// Whether there are several and one of them has several rows.
+    bool any() const { return repeated && met.size() > 1; }
   };
-  static ForeignColumn find_bodies(const TableColumns& columns);
+  static ForeignColumn find_bodies(const ForeignTable& table, const TableColumns& columns);
 
+  /// Throws where lengths of options have no unit beside columns that have one.
+  void require_units_of_options(const ForeignTable& table, const PlaceColumns& columns) const;
+  /// Throws where the rows are of several times or steps; warns where another table is of another.
+  void check_states(const ForeignTable& table, const TableColumns& columns, TableKind kind);
   /// Remembers a unit that is one of the plane or one of space.
   void remember_unit(const ForeignTable& table, const ForeignColumn& column);
   void settle_dimension();
@@ -138,11 +162,16 @@ class Assembly {
   void settle_walls();
   /// No two at one place, none far from all others, some that are fixed where they are named.
   void check_places();
+  /// Warns of periods that are much wider than what lies in them.
+  void check_widths();
   void check_fixed() const;
   void check_vectors() const;
   /// Throws for a wall whose normal does not point to the grains that touch it.
   void check_sides();
   void check_wall_side(const dem::Contact& contact, bool has_point);
+  /// Counts a grain that bears a force across a gap to its wall, or lies deep in it.
+  void check_wall_gap(const dem::Contact& contact);
+  void warn_of_wall_gaps();
   void check_given_normal(const dem::Contact& contact);
   void warn_of_normals();
   void complete(GrainRow& row) const;
@@ -157,6 +186,8 @@ class Assembly {
   /// Drops the tables of grains that an earlier file has, too; throws for any other id that is
   /// there twice.
   void join_repeated_grains();
+  /// What to do about ids that are there again, by the table's number.
+  std::string several_times(int table) const;
   /// What two rows of one grain say differently: "x = 1 and 2"; "": nothing.
   std::string difference_of(const GrainRow& a, const GrainRow& b) const;
   /// Throws unless the second table has the rows of the first and no other.
@@ -171,7 +202,12 @@ class Assembly {
   void set_spring(const std::optional<dem::Vec3>& spring, dem::Contact& contact) const;
   /// What a row of contacts tells.
   struct ContactColumns;
-  ContactColumns contact_columns(const TableColumns& columns) const;
+  ContactColumns contact_columns(const ForeignTable& table, const TableColumns& columns);
+  /// Columns beside a force that tell its parts, too: they are compared, or in doubt.
+  void find_parts_beside(const ForeignTable& table, const TableColumns& columns, ContactColumns& c);
+  /// Counts a row whose sizes contradict its force.
+  void check_sizes(const ContactRow& row);
+  void tell_sizes();
   void read_contact(const ContactColumns& columns, const ForeignRow& row, int digits);
   /// The grains or the grain and the wall of a row; swapped where the wall stands first.
   struct Ends {
@@ -207,13 +243,25 @@ class Assembly {
   /// `side`: -1 where a wall is first.
   dem::Vec3 force_of_sizes(const ContactColumns& columns, const ForeignRow& row,
                            const dem::Contact& contact, double side) const;
+  /// From the first body to the second: of round grains along the line of centres, of a wall its
+  /// own.
+  dem::Vec3 normal_of_shapes(const ForeignRow& row, const dem::Contact& contact) const;
+  /// Throws where the parts of a force do not add up to it.
+  static void check_parts(const ContactColumns& columns, const ForeignRow& row);
   /// Throws unless it is a direction across the normal; makes it one to the last digit.
   static void check_tangent(const ForeignRow& row, const dem::Vec3& normal, dem::Vec3& tangent);
 
   void add_contact(ContactRow row, bool has_normal, bool has_point, bool tell_sliding);
   /// Image, normal and point; false: it is none, or left out.
   bool settle_pair(ContactRow& row, bool has_normal, bool has_point);
-  void set_image(ContactRow& row, bool has_point) const;
+  /// What the digits of the places and radii leave open of the gap between two grains, m.
+  double rounding_of_gap(const dem::Grain& a, const dem::Grain& b) const;
+  /// Counts a contact whose point is far off the surface of one of its bodies that is not round.
+  void check_point_of_shapes(const dem::Contact& contact);
+  void set_image(ContactRow& row, bool has_normal, bool has_point) const;
+  /// Of the images of a pair that touch, the one towards which `direction` points; the nearest
+  /// where none does.
+  std::array<int, 3> image_towards(const dem::Contact& contact, const dem::Vec3& direction) const;
   bool check_pair_distance(const ContactRow& row, bool has_point);
   bool settle_wall_contact(ContactRow& row, bool has_point);
   void check_wall_distance(const ContactRow& row, bool has_point) const;
@@ -248,8 +296,14 @@ class Assembly {
   bool contacts_expected_ = true;
   std::array<bool, 3> axis_told_{true, true, true};  // images
   Tally tally_;
-  std::string first_file_;          // of grains
-  std::vector<std::int64_t> by_x_;  // of grains, where copies have numbers
+  int place_digits_ = 0;  // most that a coordinate of the files has
+  struct State {          ///< a time or step that all rows of a table tell
+    std::string file, name, value;
+  };
+  std::vector<State> states_;
+  std::map<int, std::string> time_columns_;  // names, by table of grains
+  std::string first_file_;                   // of grains
+  std::vector<std::int64_t> by_x_;           // of grains, where copies have numbers
   double least_radius_ = 0, largest_radius_ = 0;
   dem::Cell<3> cell_;  // of the files
   ImportedSnapshot out_;

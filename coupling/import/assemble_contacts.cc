@@ -1,4 +1,6 @@
 // Contacts under our conventions: force on i, normal from i to j, i < j.
+#include "coupling/import/assemble_contacts.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,32 +9,14 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "coupling/import/assemble.h"
 #include "dem/snapshot/images.h"
 #include "dem/snapshot/limits.h"
 
 namespace grainfield::coupling {
 
-// Three columns of a vector; the third is needed in 3D only.
-struct ColumnTriple {
-  ForeignColumn x, y, z;
-  explicit operator bool() const { return bool(x); }
-  dem::Vec3 of(const ForeignRow& row) const {
-    return {row.number(x), row.number(y), z ? row.number(z) : 0};
-  }
-};
-
 namespace {
 
 using dem::Vec3;
-
-ColumnTriple need_triple(const TableColumns& columns, const std::string& stem, int dim) {
-  return {columns.need(stem + "x"), columns.need(stem + "y"),
-          dim == 3 ? columns.need(stem + "z") : columns.find(stem + "z")};
-}
-ColumnTriple find_triple(const TableColumns& columns, const std::string& stem, int dim) {
-  return columns.find(stem + "x") ? need_triple(columns, stem, dim) : ColumnTriple{};
-}
 
 // Tolerance for a tangential direction's length and its cosine to the normal: few digits leave it.
 constexpr double kOffUnit = 1e-2;
@@ -62,36 +46,30 @@ int printed_digits(TableReader& reader, const ForeignTable& table,
 
 }  // namespace
 
-struct Assembly::ContactColumns {
-  ForeignColumn i, j, wall, friction, spring, sliding, fn, ft;
-  CopyColumns copies;
-  ColumnTriple force, normal_part, tangential_part, point, normal, springs, tangent;
-};
-
-Assembly::ContactColumns Assembly::contact_columns(const TableColumns& columns) const {
+Assembly::ContactColumns Assembly::contact_columns(const ForeignTable& table,
+                                                   const TableColumns& columns) {
   const int dim = out_.snapshot.dim;
   ContactColumns c;
+  std::vector<std::vector<std::string>> wanted{{"i"}, {"j", "wall"}, {"fx", "fnx", "fn"}};
+  for (const std::string stem : {"f", "fn", "ft"})
+    if (columns.has(stem + "x")) wanted.push_back({stem + "y"});
+  if (dim == 3 && columns.has("fx")) wanted.push_back({"fz"});
+  columns.require_all(wanted);
   c.i = columns.need("i");
   c.wall = columns.find("wall");
   c.j = c.wall ? columns.find("j") : columns.need("j");
   // A force beside its tangential part is told apart by the user.
-  const bool in_parts = names_.chose("fnx") && columns.find("fnx");
+  const bool in_parts = names_.chose("fnx") && columns.has("fnx");
   if (!in_parts) c.force = find_triple(columns, "f", dim);
-  if (c.force && columns.find("ftx") && !names_.chose("fx"))
-    columns.missing(
-        "fnx",
-        "beside ftx, fx may be the whole force (--column fx,fy,fz=fx,fy,fz) or its normal "
-        "part (--column fnx,fny,fnz=fx,fy,fz)",
-        "beside ftx, fx may be the whole force or its normal part: leave one out");
-  if (!c.force && columns.find("fnx")) {
+  if (!c.force && columns.has("fnx")) {
     c.normal_part = need_triple(columns, "fn", dim);
-    if (!columns.find("ftx"))
+    if (!columns.has("ftx"))
       columns.missing("ftx", "without friction: --column ftx,fty,ftz=0,0,0",
                       "without friction: ftx = 0 and its like");
     c.tangential_part = need_triple(columns, "ft", dim);
   } else if (!c.force) {
     c.fn = columns.find("fn");
-    if (!c.fn) columns.missing(columns.find("ftx") ? "fnx" : "fx", "", "forces (n, dim) tells it");
+    if (!c.fn) columns.missing(columns.has("ftx") ? "fnx" : "fx", "", "forces (n, dim) tells it");
     c.ft = columns.find("ft");
     if (!c.ft) columns.missing("ft", "without friction: --column ft=0", "without friction: ft = 0");
     c.tangent = find_triple(columns, "t", dim);
@@ -102,18 +80,30 @@ Assembly::ContactColumns Assembly::contact_columns(const TableColumns& columns) 
   c.spring = columns.find("spring");
   c.sliding = columns.find("sliding");
   c.springs = find_triple(columns, "s", dim);
+  if (c.force) find_parts_beside(table, columns, c);
   if (format_.copies_have_numbers)
     c.copies = {{c.point.x, c.point.y, c.point.z},
                 {c.normal.x, c.normal.y, c.normal.z},
                 columns.need_theirs("overlap", "px")};
+  if (dim == 3)
+    for (const ForeignColumn* column :
+         {&c.force.x, &c.force.y, &c.force.z, &c.normal_part.x, &c.tangential_part.x, &c.fn, &c.ft})
+      if (column->unit && column->unit->kind == parse_unit("N/m")->kind)
+        throw std::invalid_argument(
+            fmt::format("{}:{}: column {}: found \"{}\" in a packing in 3D, allowed: forces in N",
+                        table.file, table.header_line, column->name,
+                        (*table.columns)[static_cast<std::size_t>(column->index)]));
   return c;
 }
 
 void Assembly::add_contacts(const ForeignTable& table) {
   const TableColumns named(table, names_);
-  const ContactColumns columns = contact_columns(named);
-  named.require_length_units();
-  for (std::string& line : named.misspelled()) out_.warnings.push_back(std::move(line));
+  const ContactColumns columns = contact_columns(table, named);
+  check_states(table, named, TableKind::contacts);
+  tell_columns(table, named, TableKind::contacts);
+  if (columns.friction && std::isfinite(options_.friction))
+    out_.notes.push_back(fmt::format("{}: --friction counts where the column {} is empty, no more",
+                                     table.file, columns.friction.name));
   ++tables_;
   const std::size_t before = contacts_.size();
   const auto sides = sides_;
@@ -183,6 +173,9 @@ void Assembly::refuse_unknown(const ForeignRow& row, const ForeignColumn& column
   const std::string_view text = row.text(column);
   const bool number =
       text.find_first_not_of("0123456789+-.eE") == std::string_view::npos && !text.empty();
+  if (text.empty())
+    row.refuse(fmt::format("column {}: found nothing, expected an id; a row of sums is no contact",
+                           column.name));
   if (!number)
     row.refuse(fmt::format("contact with the unknown wall \"{}\"; {}{}", text, known_grains(),
                            options_.files.empty() ? "" : "; --wall NAME:AXIS=POSITION names it"));
@@ -205,12 +198,14 @@ void Assembly::refuse_two_meanings(const ForeignRow& row, const ForeignColumn& c
     return;
   const std::size_t tables = out_.snapshot.walls.size() - options_.walls.size();
   const auto w = static_cast<std::size_t>(-1 - wall);
-  if (w < tables || !options_.walls[w - tables].fix.empty()) return;
-  row.refuse(
-      fmt::format("{} is a grain and one of the ids of wall {}, allowed: one meaning; a column "
-                  "wall with its name "
-                  "tells contacts with the wall (--column wall=THEIRS), or leave it out of ids=",
-                  row.text(column), out_.snapshot.walls[w].name));
+  const bool in_table = w < tables;
+  if (!in_table && !options_.walls[w - tables].fix.empty()) return;
+  row.refuse(fmt::format(
+      "{} is a grain and {} wall {}, allowed: one meaning; a column wall with its name "
+      "tells contacts with the wall{}{}",
+      row.text(column), in_table ? "the name of" : "one of the ids of", out_.snapshot.walls[w].name,
+      options_.files.empty() ? "" : " (--column wall=THEIRS)",
+      in_table ? ", or name the wall by a word" : ", or leave it out of ids="));
 }
 
 Assembly::Ends Assembly::ends_of(const ContactColumns& c, const ForeignRow& row, int digits) const {
@@ -261,15 +256,26 @@ void Assembly::read_contact(const ContactColumns& columns, const ForeignRow& row
   const double side = ends.swapped ? -1 : 1;
   if (has_normal) c.normal = side * columns.normal.of(row);
   if (s.dim == 2) c.normal.z() = 0;
-  const double sign = side * format_.force_sign * (options_.flip_forces ? -1 : 1);
+  const double flip = options_.sign_of(c.j < 0), sign = side * format_.force_sign * flip;
   if (columns.fn) {
-    c.force = (options_.flip_forces ? -1 : 1) * force_of_sizes(columns, row, c, side);
+    c.force = flip * force_of_sizes(columns, row, c, side);
   } else {
     c.force = sign * (columns.force
                           ? columns.force.of(row)
                           : Vec3(columns.normal_part.of(row) + columns.tangential_part.of(row)));
   }
-  if (s.dim == 2 && std::abs(c.force.z()) <= kFlatForce * c.force.norm()) c.force.z() = 0;
+  if (columns.fn && !columns.tangent && s.dim == 2) {
+    const double ft = row.number(columns.ft);
+    tally_.ft_above += ft > 0;
+    tally_.ft_below += ft < 0;
+  }
+  if (columns.told_normal) check_parts(columns, row);
+  if (!row.empty(columns.told_fn)) r.told_fn = row.number(columns.told_fn);
+  if (!row.empty(columns.told_ft)) r.told_ft = row.number(columns.told_ft);
+  // Rounding leaves some digits along z, of a force or of what belongs to the grain's weight.
+  const dem::Grain& grain = s.grains[static_cast<std::size_t>(c.i)];
+  if (s.dim == 2 && std::abs(c.force.z()) <= kFlatForce * (c.force.norm() + 10 * grain.mass))
+    c.force.z() = 0;
   if (s.dim == 2 && c.force.z() != 0)
     row.refuse(fmt::format("found a force of {} N along z in 2D; --dim 3 for grains in space",
                            c.force.z()));
@@ -294,15 +300,27 @@ void Assembly::check_tangent(const ForeignRow& row, const Vec3& normal, Vec3& ta
   tangent /= length;
 }
 
+dem::Vec3 Assembly::normal_of_shapes(const ForeignRow& row, const dem::Contact& c) const {
+  const dem::Snapshot& s = out_.snapshot;
+  if (c.j < 0) return -s.walls[static_cast<std::size_t>(-1 - c.j)].normal;
+  const dem::Grain &a = s.grains[static_cast<std::size_t>(c.i)],
+                   &b = s.grains[static_cast<std::size_t>(c.j)];
+  for (const dem::Grain* grain : {&a, &b})
+    if (!grain->outline.empty() || !grain->axes.isZero(0))
+      row.refuse("column fn: a size, and no normal: nx, ny (3D: nz) tell its direction");
+  const Vec3 branch = b.position - a.position;
+  return branch + dem::shift_to(s.cell, dem::nearest_image(s.cell, branch));
+}
+
 dem::Vec3 Assembly::force_of_sizes(const ContactColumns& columns, const ForeignRow& row,
                                    const dem::Contact& c, double side) const {
   const double fn = row.number(columns.fn), ft = row.number(columns.ft);
   const dem::Snapshot& s = out_.snapshot;
-  if (!columns.normal)
-    row.refuse("column fn: a size, and no normal: nx, ny (3D: nz) tell its direction");
   // Seen from the grain where a wall is first.
   const bool together = format_.directions_turn_together;
-  Vec3 normal = (together ? 1 : side) * columns.normal.of(row), tangent = Vec3::Zero();
+  Vec3 normal = columns.normal ? Vec3((together ? 1 : side) * columns.normal.of(row))
+                               : normal_of_shapes(row, c),
+       tangent = Vec3::Zero();
   const double length = normal.norm();
   if (!(length > 0 && std::isfinite(length)))
     row.refuse(fmt::format("the contact's normal has length {:g}", length));

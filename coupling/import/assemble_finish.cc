@@ -16,6 +16,7 @@ using dem::Vec3;
 
 // Cosine, see assemble_pairs.cc.
 constexpr double kLeastTowards = 0.5;
+constexpr long long kManyOfOneSign = 5;  // values of ft: by chance one time in 32
 
 }  // namespace
 
@@ -57,6 +58,26 @@ void Assembly::check_sides() {
   }
 }
 
+void Assembly::warn_of_wall_gaps() {
+  const dem::Snapshot& s = out_.snapshot;
+  for (std::size_t w = 0; w < sides_.size(); ++w) {
+    const WallSide& side = sides_[w];
+    if (side.far == 0 && side.sunk == 0) continue;
+    const dem::Wall& wall = s.walls[w];
+    std::string where;
+    Eigen::Index axis = 0;
+    if (wall.normal.cwiseAbs().maxCoeff(&axis) == 1)
+      where = fmt::format(" The grains on it end at {} = {:.4g} m", "xyz"[axis],
+                          wall.point[axis] + wall.normal[axis] * side.lowest);
+    const std::string found =
+        side.far > 0 ? fmt::format("bear a force across a gap of up to {:.3g} m to", side.widest)
+                     : fmt::format("lie up to {:.3g} m deep in", side.deepest);
+    out_.warnings.push_back(
+        fmt::format("{} of {} contacts with wall {} {} it: is its plane where it says?{}",
+                    side.far > 0 ? side.far : side.sunk, side.contacts, wall.name, found, where));
+  }
+}
+
 void Assembly::warn_of_normals() {
   if (given_.not_unit > 0)
     out_.warnings.push_back(fmt::format(
@@ -77,11 +98,30 @@ void Assembly::tell_tally() {
   out_.left_out = tally_.left_out;
   out_.forceless = std::count_if(contacts_.begin(), contacts_.end(),
                                  [](const ContactRow& row) { return row.contact.force.isZero(0); });
+  tell_sizes();
   if (tally_.off_surface > 0)
     out_.warnings.push_back(fmt::format(
         "{} of {} contact points lie farther than half a radius off the surfaces of their grains "
         "(the first: {}): are they the centres of grains, or in another unit?",
         tally_.off_surface, tally_.pointed, tally_.first_off));
+  if (tally_.off_shape > 0)
+    out_.warnings.push_back(fmt::format(
+        "{} of {} contact points lie farther than a fifth of the radius off the outlines or "
+        "surfaces of their grains (the first: {}): do places, angles, shapes and points fit each "
+        "other?",
+        tally_.off_shape, tally_.shaped, tally_.first_off_shape));
+  if (tally_.ft_above >= kManyOfOneSign && tally_.ft_below == 0)
+    out_.warnings.push_back(fmt::format(
+        "none of {} values of ft is below 0, and no tx, ty tell directions: where ft is a size, "
+        "all "
+        "tangential forces are turned one way (its sign is that along the normal turned to the "
+        "left)",
+        tally_.ft_above));
+  if (tally_.below_digits > 0)
+    out_.notes.push_back(fmt::format(
+        "{} contacts bear a force across gaps that the {} digits of the places leave open: they "
+        "touch (LAMMPS: dump_modify ID format float %.17g writes all digits)",
+        tally_.below_digits, place_digits_));
   if (tally_.far > 0)
     out_.warnings.push_back(
         fmt::format("{} contacts bear a force across a gap between their grains (the first: {}): "
@@ -93,6 +133,7 @@ void Assembly::tell_tally() {
 ImportedSnapshot Assembly::finish() {
   dem::Snapshot& s = out_.snapshot;
   check_sides();
+  warn_of_wall_gaps();
   warn_of_normals();
   if (const std::string text = deep_overlaps(s); !text.empty()) out_.warnings.push_back(text);
   std::stable_sort(contacts_.begin(), contacts_.end(),

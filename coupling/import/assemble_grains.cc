@@ -9,6 +9,7 @@
 
 #include "coupling/import/assemble.h"
 #include "coupling/import/synonyms.h"
+#include "coupling/import/untaken.h"
 #include "dem/shapes/superellipsoid.h"
 #include "dem/snapshot/cell_places.h"
 #include "dem/snapshot/images.h"
@@ -19,15 +20,12 @@ namespace {
 constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
 
 // Names that tell a shape or a body of several grains.
-bool tells_shape(const std::string& name) {
-  // "c_shape[1]": a compute's, a fix's, a variable's.
-  const bool prefixed = name.size() > 2 && name[1] == '_' &&
-                        std::string_view("cfvdi").find(name[0]) != std::string_view::npos;
-  const std::string plain = plain_column_name(prefixed ? name.substr(2) : name);
+bool tells_shape(const ForeignTable& table, const std::string& name) {
+  const std::string plain = plain_untaken_name(table, name);
   constexpr std::array starts{"shape",         "blockiness", "roundness", "aspect",
                               "elongation",    "flatness",   "clump",     "multisphere",
                               "idmultisphere", "nvert",      "vertices",  "corner",
-                              "facets",        "halflength", "semiaxis"};
+                              "facets",        "halflength", "semiaxis",  "sphericity"};
   return std::any_of(starts.begin(), starts.end(),
                      [&](const char* start) { return plain.starts_with(start); });
 }
@@ -51,21 +49,26 @@ ForeignColumn Assembly::find_id(const ForeignTable& table, const TableColumns& c
   return id;
 }
 
-ForeignColumn Assembly::find_bodies(const TableColumns& columns) {
-  for (const std::string& name : columns.names()) {
-    const std::string plain = plain_column_name(name);
-    for (const char* body : {"mol", "molid", "molecule", "moleculeid", "cmol", "rigidbody"})
+ForeignColumn Assembly::find_bodies(const ForeignTable& table, const TableColumns& columns) {
+  constexpr std::array bodies{"mol",    "molid",    "molecule",    "moleculeid", "cmol",
+                              "body",   "bodyid",   "rigid",       "rigidid",    "rigidbody",
+                              "ms",     "msid",     "agglomerate", "aggregate",  "agglomerateid",
+                              "parent", "parentid", "aggregateid", "idbody",     "ibody",
+                              "idms",   "fms",      "fmsid"};
+  for (const std::string& name : columns.untaken()) {
+    std::string plain = plain_untaken_name(table, name);
+    if (plain.ends_with('1') && name.ends_with("[1]")) plain.pop_back();  // "f_ms[1]"
+    for (const char* body : bodies)
       if (plain == body) return columns.need_theirs(name);
   }
   return {};
 }
 
 void Assembly::Bodies::add(const ForeignRow& row) {
-  if (!column || repeated) return;
+  if (!column || any()) return;
   const std::string_view text = row.text(column);
-  if (text.empty() || text == "0") return;
-  repeated = met.find(text) != met.end();
-  met.emplace(text);
+  if (text.empty() || text == "0" || text == "-1" || text == "nan") return;
+  repeated = !met.emplace(text).second || repeated;
 }
 
 Assembly::PlaceColumns Assembly::place_columns(const ForeignTable& table,
@@ -113,12 +116,13 @@ Assembly::PlaceColumns Assembly::place_columns(const ForeignTable& table,
   return out;
 }
 
-void Assembly::read_place(const PlaceColumns& columns, const ForeignRow& row, GrainRow& out) const {
+void Assembly::read_place(const PlaceColumns& columns, const ForeignRow& row, GrainRow& out) {
   dem::Vec3& place = out.grain.position;
   dem::Vec3 share = dem::Vec3::Zero();
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
     const double number = columns.place[a] ? row.number(columns.place[a]) : 0;
+    if (columns.place[a]) place_digits_ = std::max(place_digits_, row.digits(columns.place[a]));
     (columns.scaled[a] ? share : place)[axis] = number;
     if (columns.scaled[a]) place[axis] = columns.box->low[axis];
     if (!columns.image[a] || row.empty(columns.image[a])) continue;
@@ -176,19 +180,10 @@ double Assembly::complete_superellipsoid(dem::Grain& g) const {
   return solid.volume;
 }
 
-void Assembly::warn_of_shapes(const ForeignTable& table, const TableColumns& columns,
-                              const ShapeColumns& taken) {
+void Assembly::warn_of_shapes(const ForeignTable& table, const TableColumns& columns, bool taken) {
   std::vector<std::string> left;
-  const auto used = [&](const std::string& name) {
-    if (!taken) return false;
-    const auto is = [&](const ForeignColumn& column) {
-      return column.index >= 0 && (*table.columns)[static_cast<std::size_t>(column.index)] == name;
-    };
-    return std::any_of(taken.axes.begin(), taken.axes.end(), is) ||
-           std::any_of(taken.exponents.begin(), taken.exponents.end(), is);
-  };
-  for (const std::string& name : columns.names())
-    if (tells_shape(name) && !used(name)) left.push_back(name);
+  for (const std::string& name : columns.untaken())
+    if (tells_shape(table, name)) left.push_back(name);
   if (left.empty()) return;
   out_.warnings.push_back(
       fmt::format("{}:{}: the columns {} tell of shapes and are not taken: every row is read as {}",
@@ -196,6 +191,28 @@ void Assembly::warn_of_shapes(const ForeignTable& table, const TableColumns& col
                   taken ? "a superellipsoid of the other columns"
                         : "a grain of its own, round or with an "
                           "outline"));
+}
+
+void Assembly::tell_columns(const ForeignTable& table, const TableColumns& columns,
+                            TableKind kind) {
+  if (std::string doubt = columns.require_units(); !doubt.empty())
+    out_.warnings.push_back(std::move(doubt));
+  if (!table.unit_remark.empty() && !columns.tells_units() && table.units.is_si() &&
+      table.told_units.empty())
+    out_.warnings.push_back(fmt::format(
+        "{}, and no column has a unit: its numbers are read as SI (--units, or \"x (mm)\")",
+        table.unit_remark));
+  out_.warnings.insert(out_.warnings.end(), table.doubts.begin(), table.doubts.end());
+  for (std::string& line : columns.misspelled()) out_.warnings.push_back(std::move(line));
+  if (kind == TableKind::grains)
+    for (const std::string& name : columns.untaken()) {
+      const std::string plain = plain_column_name(name);
+      for (const char* time : {"time", "t", "step", "timestep", "frame", "iteration", "cycle"})
+        if (plain == time) time_columns_.try_emplace(tables_, name);
+    }
+  UntakenColumns untaken = untaken_columns(table, columns, kind);
+  if (!untaken.note.empty()) out_.notes.push_back(std::move(untaken.note));
+  for (std::string& line : untaken.warnings) out_.warnings.push_back(std::move(line));
 }
 
 bool Assembly::lie_outside() const {

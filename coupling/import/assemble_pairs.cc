@@ -23,13 +23,62 @@ constexpr double kDistant = 2;
 // centre, least, and of the way from the wall to the centre of a disk or sphere, radii, where no
 // point is told: disks and spheres lie on what they touch, corners of polygons may stand out far.
 constexpr double kLeastCosine = 0.5, kLeastCosineOfPolygon = 0.1, kLeastHeight = 0.25;
+constexpr int kAllDigits = 15;       // of a number that was not rounded in printing
 constexpr double kNotUnit = 1e-3;    // of a normal's length from 1
 constexpr double kOffSurface = 0.5;  // radii from both surfaces to a contact point, but for overlap
 constexpr double kAcrossNormal = 0.5;  // cosine of the angle to the wall's normal
+// Radii: a force across a wider gap to a wall, whose place is often told by hand, is in doubt; so
+// is a deeper overlap.
+constexpr double kOffShape = 0.2;  // radii from a shape to a contact point, but for overlap
+constexpr double kWallGap = 0.01, kWallOverlap = 0.2;
 // Of the Coulomb limit: a contact this near to it slides.
 constexpr double kSliding = 1e-6;
 
+double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 way = b - a;
+  const double share = std::clamp((p - a).dot(way) / way.squaredNorm(), 0.0, 1.0);
+  return (p - a - share * way).norm();
+}
+
+// Of a point in the plane from the edges of a grain's outline.
+double distance_to_outline(const dem::Grain& g, const Vec3& point) {
+  const double cosine = std::cos(g.angle), sine = std::sin(g.angle);
+  const auto corner = [&](std::size_t k) -> Vec3 {
+    const auto& [x, y] = g.outline[k % g.outline.size()];
+    return g.position + Vec3(cosine * x - sine * y, sine * x + cosine * y, 0);
+  };
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < g.outline.size(); ++k)
+    least = std::min(least, distance_to_segment(point, corner(k), corner(k + 1)));
+  return least;
+}
+
 }  // namespace
+
+void Assembly::check_point_of_shapes(const dem::Contact& c) {
+  const dem::Snapshot& s = out_.snapshot;
+  const Vec3 normal = c.normal.normalized();
+  const double overlap = std::max(0.0, -gap_of(s, c));
+  const auto is_shape = [](const dem::Grain& g) { return !g.outline.empty() || !g.axes.isZero(0); };
+  bool any = false, off = false;
+  const auto check = [&](const dem::Grain& g, const Vec3& outwards) {
+    if (!is_shape(g)) return;
+    any = true;
+    // Along the normal the body ends at the contact; an outline's edges are near it, too.
+    double away = std::abs((farthest_along(g, outwards) - c.point).dot(outwards));
+    if (!g.outline.empty()) away = std::max(away, distance_to_outline(g, c.point));
+    off = off || away > overlap + kOffShape * g.radius;
+  };
+  const dem::Grain& first = s.grains[static_cast<std::size_t>(c.i)];
+  check(first, normal);
+  if (c.j >= 0) {
+    dem::Grain second = s.grains[static_cast<std::size_t>(c.j)];
+    second.position = dem::second_place(s, c);
+    check(second, -normal);
+  }
+  tally_.shaped += any;
+  if (off && tally_.off_shape++ == 0) tally_.first_off_shape = fmt::format("of grain {}", first.id);
+}
 
 void Assembly::set_spring(const std::optional<Vec3>& spring, dem::Contact& c) const {
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -100,17 +149,48 @@ bool Assembly::settle_wall_contact(ContactRow& row, bool has_point) {
   }
   check_wall_distance(row, has_point);
   check_wall_side(c, has_point);
+  check_wall_gap(c);
+  if (has_point) check_point_of_shapes(c);
   return true;
 }
 
-void Assembly::set_image(ContactRow& row, bool has_point) const {
+std::array<int, 3> Assembly::image_towards(const dem::Contact& c, const Vec3& direction) const {
+  const dem::Snapshot& s = out_.snapshot;
+  const dem::Grain &a = s.grains[static_cast<std::size_t>(c.i)],
+                   &b = s.grains[static_cast<std::size_t>(c.j)];
+  const double reach = a.radius + b.radius + kGap * std::min(a.radius, b.radius);
+  const auto branch = [&](const std::array<int, 3>& image) -> Vec3 {
+    return b.position + dem::shift_to(s.cell, image) - a.position;
+  };
+  std::array<int, 3> best = c.image;
+  if (branch(best).dot(direction) > 0) return best;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const int step : {-1, 1}) {
+      if (!s.cell.periodic[axis]) continue;
+      std::array<int, 3> image = c.image;
+      image[axis] += step;
+      const Vec3 way = branch(image);
+      if (way.norm() > reach || way.norm() >= nearest || !(way.dot(direction) > 0)) continue;
+      nearest = way.norm();
+      best = image;
+    }
+  return best;
+}
+
+void Assembly::set_image(ContactRow& row, bool has_normal, bool has_point) const {
   const dem::Snapshot& s = out_.snapshot;
   dem::Contact& c = row.contact;
   const Vec3 &a = s.grains[static_cast<std::size_t>(c.i)].position,
              &b = s.grains[static_cast<std::size_t>(c.j)].position;
   try {
     c.image = dem::nearest_image(s.cell, b - a);
-    if (!has_point || !s.cell.is_periodic()) return;
+    if (!s.cell.is_periodic()) return;
+    if (!has_point) {
+      if (has_normal || !c.force.isZero(0))
+        c.image = image_towards(c, has_normal ? c.normal : Vec3(-c.force));
+      return;
+    }
     // Two grains of a narrow cell touch through several images: the point tells which.
     const auto other = dem::nearest_image(s.cell, b - (a + 2 * (c.point - a)));
     const auto away = [&](const std::array<int, 3>& image) {
@@ -127,14 +207,14 @@ bool Assembly::settle_pair(ContactRow& row, bool has_normal, bool has_point) {
   dem::Contact& c = row.contact;
   const dem::Grain &a = s.grains[static_cast<std::size_t>(c.i)],
                    &b = s.grains[static_cast<std::size_t>(c.j)];
-  set_image(row, has_point);
+  set_image(row, has_normal, has_point);
   const Vec3 branch = dem::second_place(s, c) - a.position;
   const double d = branch.norm();
   if (!(d > 0))
     row.refuse(fmt::format("grains {} and {} have the same centre, allowed: a place for each", a.id,
                            b.id));
-  const bool apart = gap_of(s, c) > kGap * std::min(a.radius, b.radius);
-  if (apart && c.force.isZero(0)) {
+  const double gap = gap_of(s, c), touch = kGap * std::min(a.radius, b.radius);
+  if (gap > touch && c.force.isZero(0)) {
     tally_.idle.emplace_back(c.i, c.j);
     return false;
   }
@@ -150,7 +230,7 @@ bool Assembly::settle_pair(ContactRow& row, bool has_normal, bool has_point) {
     if (!has_normal) c.normal = branch / d;
     // The middle of the chord in which two overlapping circles cross.
     const double arm = (d * d + a.radius * a.radius - b.radius * b.radius) / (2 * d);
-    if (!has_point) c.point = a.position + arm * c.normal;
+    if (!has_point) c.point = a.position + arm * branch / d;
   }
   if (has_point && !polygons && a.axes.isZero(0) && b.axes.isZero(0)) {
     const Vec3 second = dem::second_place(s, c);
@@ -162,8 +242,29 @@ bool Assembly::settle_pair(ContactRow& row, bool has_normal, bool has_point) {
       tally_.first_off = fmt::format("{} and {}", a.id, b.id);
   }
   if (!check_pair_distance(row, has_point)) return false;
-  if (apart && tally_.far++ == 0) tally_.first_far = fmt::format("{} and {}", a.id, b.id);
+  if (has_point) check_point_of_shapes(c);
+  if (gap <= touch) return true;
+  if (gap <= touch + rounding_of_gap(a, b)) {
+    ++tally_.below_digits;
+  } else if (tally_.far++ == 0) {
+    tally_.first_far = fmt::format("{} and {}", a.id, b.id);
+  }
   return true;
+}
+
+double Assembly::rounding_of_gap(const dem::Grain& a, const dem::Grain& b) const {
+  if (place_digits_ >= kAllDigits) return 0;
+  const auto rounding = [&](double number) {
+    if (number == 0) return 0.0;
+    return 0.5 * std::pow(10.0, std::floor(std::log10(std::abs(number))) + 1 - place_digits_);
+  };
+  double out = 0;
+  for (const dem::Grain* grain : {&a, &b}) {
+    Vec3 of_place;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) of_place[axis] = rounding(grain->position[axis]);
+    out += of_place.norm() + rounding(grain->radius);
+  }
+  return out;
 }
 
 bool Assembly::check_pair_distance(const ContactRow& row, bool has_point) {
@@ -260,7 +361,24 @@ void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool
   // False where the coefficient is unknown (nan).
   if (tell_sliding)
     c.sliding = std::abs(c.tangential_force) >= (1 - kSliding) * c.friction * c.normal_force;
+  check_sizes(row);
   contacts_.push_back(std::move(row));
+}
+
+void Assembly::check_wall_gap(const dem::Contact& c) {
+  const dem::Snapshot& s = out_.snapshot;
+  const dem::Grain& grain = s.grains[static_cast<std::size_t>(c.i)];
+  const double gap = gap_of(s, c);
+  WallSide& side = sides_[static_cast<std::size_t>(-1 - c.j)];
+  if (c.force.isZero(0)) return;
+  side.lowest = std::min(side.lowest, gap);
+  if (gap > kWallGap * grain.radius + rounding_of_gap(grain, grain)) {
+    ++side.far;
+    side.widest = std::max(side.widest, gap);
+  } else if (-gap > kWallOverlap * grain.radius) {
+    ++side.sunk;
+    side.deepest = std::max(side.deepest, -gap);
+  }
 }
 
 void Assembly::check_given_normal(const dem::Contact& c) {

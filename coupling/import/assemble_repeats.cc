@@ -80,6 +80,16 @@ void Assembly::tell_repeated(const Repeats& repeats, const char* kind) {
                   *repeats.second, repeats.rows, kind, *repeats.first));
 }
 
+std::string Assembly::several_times(int table) const {
+  const auto at = time_columns_.find(table);
+  return at == time_columns_.end()
+             ? "; of several times or steps import one at a time"
+             : fmt::format(
+                   "; the column {} tells that the table has several times: write the rows of "
+                   "one of them to a table of its own",
+                   at->second);
+}
+
 void Assembly::join_repeated_grains() {
   std::map<TwoTables, Repeats> repeats;
   std::map<int, long long> rows;
@@ -95,7 +105,7 @@ void Assembly::join_repeated_grains() {
             "{}: grain {} is there already, at {}{}", row.source.where(), row.grain.id,
             rows_[n].source.where(),
             row.digits == 0
-                ? "; of several times or steps import one at a time"
+                ? several_times(row.source.table)
                 : fmt::format("; ids are printed with {} digits only, print them as whole numbers "
                               "(LAMMPS: dump_modify ID format float %.17g)",
                               row.digits)));

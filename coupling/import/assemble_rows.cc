@@ -4,18 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "coupling/import/assemble.h"
 #include "coupling/import/outline_text.h"
+#include "coupling/import/synonyms.h"
 #include "dem/snapshot/limits.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
 
 // Difference of a quaternion's length from 1 that six digits leave.
 constexpr double kUnit = 1e-5;
+constexpr std::size_t kMostStates = 1000;  // times that are told apart
 
 std::array<double, 4> orientation_of(const ForeignRow& row,
                                      const std::array<ForeignColumn, 4>& columns, std::int64_t id) {
@@ -53,12 +58,83 @@ std::string Assembly::Source::where() const { return fmt::format("{}:{}", *file,
 
 void Assembly::remember_unit(const ForeignTable& table, const ForeignColumn& column) {
   if (!column.unit) return;
-  const bool plane =
-      column.unit->kind == parse_unit(column.name == "volume" ? "m2" : "kg/m2")->kind;
+  bool plane = false;
+  for (const char* unit : {"m2", "kg/m2", "kg/m"})
+    plane = plane || column.unit->kind == parse_unit(unit)->kind;
+  if (column.name == "mass" && !plane) return;  // kg are those of the plane, too
   (plane ? plane_units_ : space_units_)
       .push_back(fmt::format("{}:{}: column {}: found \"{}\"", table.file, table.header_line,
                              column.name,
                              (*table.columns)[static_cast<std::size_t>(column.index)]));
+}
+
+void Assembly::require_units_of_options(const ForeignTable& table,
+                                        const PlaceColumns& columns) const {
+  for (const ForeignColumn& place : columns.place) {
+    if (!place.unit || place.unit->ten == 0 || place.index < 0 || table.units.length != 0) continue;
+    const auto require = [&](bool bare, const std::string& option) {
+      if (!bare) return;
+      throw std::invalid_argument(fmt::format(
+          "{}: found a length without a unit beside the column \"{}\" of {}, expected one behind a "
+          "blank, such as \"5 mm\" or \"0.005 m\"",
+          option, (*table.columns)[static_cast<std::size_t>(place.index)], table.file));
+    };
+    for (const WallChoice& wall : options_.walls) require(wall.bare, "--wall " + wall.name);
+    for (const PeriodicAxis& axis : options_.periodic)
+      require(axis.bare, fmt::format("--periodic {}", "xyz"[axis.axis]));
+  }
+}
+
+void Assembly::check_states(const ForeignTable& table, const TableColumns& columns,
+                            TableKind kind) {
+  if (format_.name != "csv" || table.arrays) return;
+  for (const std::string& name : columns.untaken()) {
+    const std::string plain = plain_column_name(name);
+    const bool time = plain == "time" || plain == "simulationtime" || plain == "t";
+    const bool step = plain == "step" || plain == "timestep" || plain == "frame";
+    if (!time && !step) continue;
+    const ForeignColumn column = columns.peek_theirs(name);
+    std::set<std::string> values;
+    long long rows = 0;
+    reader_.read(table, [&](const ForeignRow& row) {
+      ++rows;
+      if (!row.empty(column) && values.size() <= kMostStates) values.emplace(row.text(column));
+    });
+    // A time of each row is its own, such as that of a contact's beginning.
+    if (values.empty() || 2 * static_cast<long long>(values.size()) > std::max(rows, 2LL)) continue;
+    if (values.size() > 1)
+      throw std::invalid_argument(fmt::format(
+          "{}:{}: column {}: found rows of several states, {}{}, allowed: those of one; write a "
+          "file for each",
+          table.file, table.header_line, name,
+          fmt::join(values.begin(), std::next(values.begin(), 2), ", "),
+          values.size() > 2 ? ", ..." : ""));
+    const std::string value = *values.begin();
+    if (kind == TableKind::grains) time_columns_.try_emplace(tables_, name);
+    columns.need_theirs(name);  // it is used, if only to compare
+    for (const State& other : states_)
+      if (plain_column_name(other.name) == plain && other.value != value &&
+          other.file != table.file)
+        out_.warnings.push_back(fmt::format("{}: {} is {}, in {} it is {}: are they of one state?",
+                                            table.file, name, value, other.file, other.value));
+    states_.push_back({table.file, name, value});
+    const std::optional<double> seconds = dem::parse_number(value);
+    const Unit unit = column.unit.value_or(*parse_unit("s"));
+    if (time && plain != "t" && seconds && std::isfinite(*seconds) &&
+        unit.kind == parse_unit("s")->kind && out_.snapshot.time == 0)
+      out_.snapshot.time = in_si(value, unit).value_or(0);
+  }
+}
+
+void Assembly::require_columns_of_grains(const TableColumns& columns) const {
+  std::vector<std::vector<std::string>> wanted;
+  if (contacts_expected_ && !format_.rows_are_ids) wanted.push_back({"id"});
+  for (const std::string axis : {"x", "y", "z"})
+    if (axis != "z" || options_.dim == 3)
+      wanted.push_back({axis, axis + "u", axis + "s", axis + "su"});
+  wanted.push_back({"radius", "diameter", "outline", "axis_x", "diameter_x"});
+  if (!(options_.density > 0)) wanted.push_back({"mass", "density"});
+  columns.require_all(wanted);
 }
 
 void Assembly::add_grains(const ForeignTable& table) {
@@ -66,17 +142,22 @@ void Assembly::add_grains(const ForeignTable& table) {
   ++tables_;
   const std::size_t rows_before = rows_.size();
   if (first_file_.empty()) first_file_ = table.file;
+  require_columns_of_grains(columns);
   const ForeignColumn id = find_id(table, columns);
   const PlaceColumns places = place_columns(table, columns);
+  require_units_of_options(table, places);
   has_z_ = has_z_ || places.place[2];
   for (std::size_t a = 0; a < 3; ++a)
     axis_told_[a] = axis_told_[a] && (!places.carried_back[a] || places.image[a]);
   const ShapeColumns shape = shape_columns(columns);
-  warn_of_shapes(table, columns, shape);
   const ForeignColumn vx = columns.find("vx"), vy = columns.find("vy"), vz = columns.find("vz");
   const ForeignColumn angle = columns.find("angle"), spin = columns.find("spin");
   const ForeignColumn spin_x = columns.find("spin_x"), spin_y = columns.find("spin_y");
   std::array<ForeignColumn, 4> quaternion{columns.find("qw")};
+  if (!vx && (vy || vz))
+    out_.warnings.push_back(
+        fmt::format("{}:{}: velocities along some axes and no vx: read as 0 along x", table.file,
+                    table.header_line));
   if (quaternion[0])
     quaternion = {quaternion[0], columns.need("qx"), columns.need("qy"), columns.need("qz")};
   const ForeignColumn material = columns.find("material");
@@ -91,14 +172,14 @@ void Assembly::add_grains(const ForeignTable& table) {
                     options_.dim == 3 ? "mass (kg) or density (kg/m3) tells it"
                                       : "mass (kg) or density (kg/m2) tells it");
   const ForeignColumn inertia = columns.find("inertia"), volume = columns.find("volume");
+  if (options_.density > 0 && (mass || density))
+    out_.notes.push_back(fmt::format("{}: --density is not used: the table has {}", table.file,
+                                     mass ? "masses" : "densities"));
   if (!mass) remember_unit(table, density);
-  remember_unit(table, volume);
+  for (const ForeignColumn& column : {mass, volume}) remember_unit(table, column);
   const ForeignColumn fixed = columns.find("fixed");
   const ForeignColumn mark =
       options_.fixed_column.empty() ? ForeignColumn{} : columns.need_theirs(options_.fixed_column);
-  Bodies bodies{find_bodies(columns), {}, false};
-  columns.require_length_units();
-  for (std::string& line : columns.misspelled()) out_.warnings.push_back(std::move(line));
   std::vector<std::array<ForeignColumn, 7>> wall_columns;
   for (const WallChoice& wall : options_.walls) {
     wall_columns.emplace_back();
@@ -106,6 +187,12 @@ void Assembly::add_grains(const ForeignTable& table) {
       wall_columns.back()[k] =
           columns.need_theirs(fmt::format("{}[{}]", wall.fix, k + 1), k < 4 ? "fx" : "px");
   }
+  Bodies bodies{find_bodies(table, columns), {}, false};
+  warn_of_shapes(table, columns, bool(shape));
+  check_states(table, columns, TableKind::grains);
+  tell_columns(table, columns, TableKind::grains);
+  const double kWholeTurn = 2 * std::numbers::pi;
+  long long turns = 0;
   reader_.read(table, [&](const ForeignRow& row) {
     const auto value = [&](const ForeignColumn& c) { return row.empty(c) ? 0 : row.number(c); };
     GrainRow r;
@@ -121,6 +208,7 @@ void Assembly::add_grains(const ForeignTable& table) {
     read_place(places, row, r);
     g.velocity = {value(vx), value(vy), value(vz)};
     g.angle = value(angle);
+    turns += !row.empty(outline) && std::abs(g.angle) > kWholeTurn;
     g.spin = value(spin);
     g.angular_velocity = {value(spin_x), value(spin_y), g.spin};
     if (quaternion[0]) g.orientation = orientation_of(row, quaternion, g.id);
@@ -159,7 +247,8 @@ void Assembly::add_grains(const ForeignTable& table) {
     }
     g.mass = value(mass);
     r.density = mass ? 0 : density ? row.number(density) : options_.density;
-    r.sphere_density = !mass && density && format_.densities_of_spheres;
+    r.sphere_density =
+        !mass && format_.densities_of_spheres && (places.place[2] || !format_.rows_are_ids);
     if (mass && !row.empty(density)) r.told_density = row.number(density);
     const double given = mass ? g.mass : r.density;
     if (!(given > 0) && !(g.fixed && given == 0))
@@ -182,6 +271,11 @@ void Assembly::add_grains(const ForeignTable& table) {
     }
     rows_.push_back(std::move(r));
   });
+  if (turns > 0 && !angle.unit)
+    out_.warnings.push_back(fmt::format(
+        "{}:{}: {} angles of outlines are beyond a whole turn in rad: are they degrees, \"angle "
+        "(deg)\"?",
+        table.file, table.header_line, turns));
   const auto elongated = [](const GrainRow& row) {
     const dem::Vec3& axes = row.grain.axes;
     return axes.maxCoeff() - axes.minCoeff() > 1e-6 * axes.maxCoeff();
@@ -192,7 +286,7 @@ void Assembly::add_grains(const ForeignTable& table) {
         "{}:{}: superellipsoids of unlike axes and no column tells how they are turned: all are "
         "unturned (--column qw,qx,qy,qz=... names a quaternion)",
         table.file, table.header_line));
-  if (bodies.repeated)
+  if (bodies.any())
     out_.warnings.push_back(fmt::format(
         "{}:{}: rows share numbers in the column {}: grains of one rigid body are read as "
         "grains of their own, and the forces within the body are not in the file",
@@ -205,8 +299,7 @@ void Assembly::add_walls(const ForeignTable& table) {
                       nx = columns.need("nx"), ny = columns.need("ny"), z = columns.find("z"),
                       nz = columns.find("nz"), friction = columns.find("friction"),
                       material = columns.find("material");
-  columns.require_length_units();
-  for (std::string& line : columns.misspelled()) out_.warnings.push_back(std::move(line));
+  tell_columns(table, columns, TableKind::walls);
   reader_.read(table, [&](const ForeignRow& row) {
     dem::Wall wall;
     wall.name = std::string(row.text(name));

@@ -14,15 +14,16 @@
 #include <utility>
 
 #include "coupling/import/format.h"
+#include "coupling/import/number_signs.h"
 #include "coupling/import/row_text.h"
 #include "coupling/import/synonyms.h"
+#include "coupling/import/told_units.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
 
-constexpr std::size_t kHead = 60;         // lines before the rows, at most
-constexpr std::size_t kForCommas = 1000;  // rows that are searched for decimal commas
+constexpr std::size_t kHead = 60;  // lines before the rows, at most
 
 struct HeadLine {
   std::string text;  // of a comment: without its sign
@@ -51,7 +52,13 @@ Head head_of(Lines& lines) {
     }
     const bool comment = text.front() == '#';
     if (comment) text.remove_prefix(1);
-    head.lines.push_back({std::string(text), lines.line(), lines.place(), comment});
+    std::string whole(text);
+    const long long first = lines.line();
+    // A name over several lines, "x\n(mm)" in quotation marks.
+    const auto is_open = [&] { return std::count(whole.begin(), whole.end(), '"') % 2 == 1; };
+    while (!comment && is_open() && whole.size() < Lines::longest && lines.next(line))
+      whole += fmt::format(" {}", line);
+    head.lines.push_back({std::move(whole), first, lines.place(), comment});
   }
   return head;
 }
@@ -69,14 +76,6 @@ std::size_t count_of(const std::vector<std::string>& values) {
   return count;
 }
 
-bool is_decimal_comma(std::string_view value) {
-  const std::size_t comma = value.find(',');
-  if (comma == std::string_view::npos) return false;
-  std::string text(value);
-  text[comma] = '.';
-  return dem::parse_number(text).has_value();
-}
-
 bool is_number(std::string_view value, char separator) {
   return dem::parse_number(value).has_value() || (separator != ',' && is_decimal_comma(value));
 }
@@ -89,27 +88,6 @@ bool is_row(const std::vector<std::string>& values, char separator) {
     (is_number(value, separator) ? numbers : words) += 1;
   }
   return numbers > 0 && numbers >= words;
-}
-
-// "-", "m", "[mm]" under the names.
-std::optional<std::string> told_unit(std::string value, const HeadWords& known) {
-  if (value.size() > 2 && std::string("([{").find(value.front()) != std::string::npos)
-    value = std::string(trimmed(std::string_view(value).substr(1, value.size() - 2)));
-  if (value.empty() || value == "-" || value == "1") return "";
-  const auto& units = known.units;
-  if (parse_unit(value) || std::find(units.begin(), units.end(), value) != units.end())
-    return value;
-  return std::nullopt;
-}
-
-bool is_units(const std::vector<std::string>& values, const HeadWords& known) {
-  bool any = false;
-  for (const std::string& value : values) {
-    const auto unit = told_unit(value, known);
-    if (!unit) return false;
-    any = any || !unit->empty();
-  }
-  return any;
 }
 
 int known_names(const std::vector<std::string>& values, const HeadWords& known) {
@@ -127,7 +105,7 @@ char separator_of(const Head& head) {
   if (head.separator != 0) return head.separator;
   char best = 0;
   int most = 0;
-  for (const char separator : {',', ';', '\t', ' '})
+  for (const char separator : {',', ';', '\t', '|', ' '})
     for (const HeadLine& line : head.lines) {
       const auto values = values_of(line, separator);
       if (values.size() < 2) continue;
@@ -140,7 +118,7 @@ char separator_of(const Head& head) {
       // Names may have blanks in them, beside any other separator.
       const bool blanks = separator == ' ';
       if (known <= most ||
-          (blanks && (known < 2 || line.text.find_first_of(",;\t") != std::string::npos)))
+          (blanks && (known < 2 || line.text.find_first_of(",;\t|") != std::string::npos)))
         continue;
       most = known;
       best = separator;
@@ -149,7 +127,7 @@ char separator_of(const Head& head) {
   std::size_t parts = 1;
   for (const HeadLine& line : head.lines) {
     if (line.comment) continue;
-    for (const char separator : {',', ';', '\t'}) {
+    for (const char separator : {',', ';', '\t', '|'}) {
       if (values_of(line, separator).size() <= parts) continue;
       parts = values_of(line, separator).size();
       best = separator;
@@ -157,17 +135,6 @@ char separator_of(const Head& head) {
     break;
   }
   return best == 0 ? ',' : best;
-}
-
-bool has_decimal_commas(Lines& lines, const ForeignTable& table) {
-  if (table.separator == ',') return false;
-  lines.seek(table.first);
-  std::string_view line;
-  RowParts parts;
-  for (std::size_t n = 0; n < kForCommas && lines.next(line); ++n)
-    for (const std::string_view value : parts.of(line, table.separator, lines))
-      if (is_decimal_comma(value)) return true;
-  return false;
 }
 
 [[noreturn]] void refuse_empty(const std::string& file) {
@@ -178,7 +145,7 @@ bool has_decimal_commas(Lines& lines, const ForeignTable& table) {
 class HeaderSearch {
  public:
   HeaderSearch(const std::string& file, const Head& head, char separator)
-      : file_(file), head_(head) {
+      : file_(file), head_(head), separator_(separator) {
     for (const HeadLine& line : head.lines) values_.push_back(values_of(line, separator));
     const auto row = [&](std::size_t k) {
       return !head.lines[k].comment && count_of(values_[k]) > 1 && is_row(values_[k], separator);
@@ -191,20 +158,16 @@ class HeaderSearch {
     const std::size_t none = values_.size();
     std::size_t names = most_known(false);
     if (names == none) names = most_known(true);
-    if (names == none) names = words_before_numbers();
+    const bool any_row = std::find(rows_.begin(), rows_.end(), true) != rows_.end();
+    if (names == none && (any_row || head_.lines.size() < kHead)) names = words_before_numbers();
     if (names == none) refuse();
-    // A line of units stands below the names, or above them, also as a comment.
-    const auto of_units = [&](std::size_t k) {
-      return k < none && !rows_[k] && is_units(values_[k], head_.known) &&
-             count_of(values_[k]) <= values_[names].size() &&
-             (!head_.lines[k].comment || count_of(values_[k]) == count_of(values_[names]));
-    };
-    const std::size_t below = names + 1, above = names == 0 ? none : names - 1;
-    const std::size_t units = of_units(below) ? below : of_units(above) ? above : none;
+    const std::size_t units = units_line(names);
     table.columns = std::make_shared<const std::vector<std::string>>(
-        units < none ? with_units(values_[names], values_[units]) : values_[names]);
+        units < none ? names_with_units(values_[names], *units_of(units, names)) : values_[names]);
     table.header_line = head_.lines[names].line;
-    table.first = head_.lines[units < none && units == below ? units : names].behind;
+    const bool behind = units < none && units > names && !head_.lines[units].comment;
+    table.first = head_.lines[behind ? units : names].behind;
+    if (units == none) table.unit_remark = remark(names);
   }
 
  private:
@@ -238,17 +201,40 @@ class HeaderSearch {
       if (!head_.lines[k].comment) found = k;
     return found;
   }
-  std::vector<std::string> with_units(std::vector<std::string> names,
-                                      const std::vector<std::string>& units) const {
-    for (std::size_t k = 0; k < std::min(names.size(), units.size()); ++k) {
-      const std::string unit = *told_unit(units[k], head_.known);
-      if (!unit.empty()) names[k] += fmt::format(" ({})", unit);
+  // The units of a line of nothing else; a comment has one for each name.
+  std::optional<std::vector<std::string>> units_of(std::size_t k, std::size_t names) const {
+    const HeadLine& line = head_.lines[k];
+    auto units = units_row(line.text, separator_, values_[names].size(), head_.known.units);
+    if (units && line.comment && count_of(*units) < count_of(values_[names]) &&
+        count_of(values_[k]) != count_of(values_[names]))
+      units.reset();
+    return units;
+  }
+  // Below the names up to the first row, or above them, also as a comment, the nearest.
+  std::size_t units_line(std::size_t names) const {
+    for (std::size_t k = names + 1; k < values_.size() && !rows_[k]; ++k)
+      if (units_of(k, names)) return k;
+    for (std::size_t k = names; k-- > 0 && !rows_[k];)
+      if (units_of(k, names)) return k;
+    return values_.size();
+  }
+  // A unit in a title or a comment.
+  std::string remark(std::size_t names) const {
+    for (std::size_t k = 0; k < values_.size(); ++k) {
+      const HeadLine& line = head_.lines[k];
+      if (k == names || rows_[k] || (k > names && !line.comment)) continue;
+      if (std::string text = unit_remark(file_, line.line, line.text); !text.empty()) return text;
     }
-    return names;
+    return "";
   }
 
   [[noreturn]] void refuse() const {
     const auto& lines = head_.lines;
+    if (lines.size() == kHead && std::find(rows_.begin(), rows_.end(), true) == rows_.end())
+      throw std::invalid_argument(fmt::format(
+          "{}: no line of names among its first {} lines, expected one such as id,x,y,radius,mass; "
+          "take out the lines before it",
+          file_, kHead));
     const auto text = std::find_if(lines.begin(), lines.end(),
                                    [](const HeadLine& line) { return !line.comment; });
     if (text == lines.end()) refuse_empty(file_);
@@ -261,6 +247,7 @@ class HeaderSearch {
 
   const std::string& file_;
   const Head& head_;
+  char separator_;
   std::vector<std::vector<std::string>> values_;
   std::vector<bool> rows_;  // more numbers than words
 };
@@ -277,7 +264,9 @@ ForeignTable scan_csv(const std::string& file, HeadWords&& known) {
   table.separator = separator_of(head);
   table.any_names = true;
   HeaderSearch(file, head, table.separator).find(table);
-  table.decimal_commas = has_decimal_commas(lines, table);
+  NumberSigns signs = number_signs(lines, table);
+  table.decimal_commas = signs.decimal_commas;
+  if (!signs.doubt.empty()) table.doubts.push_back(std::move(signs.doubt));
   return table;
 }
 

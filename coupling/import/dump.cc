@@ -141,7 +141,10 @@ class DumpScan {
     std::vector<std::string_view> words, fields;
     split(name, ' ', words);
     words.erase(words.begin(), words.begin() + 2);
-    const bool tilted = words.size() == 6, general = words.size() == 5;
+    // Old tilted ones have no words of the boundaries.
+    const bool old = words.size() == 3 && words[0] == "xy";
+    const bool tilted = words.size() == 6 || old, general = words.size() == 5;
+    if (old) words.clear();
     if (words.size() > 3) words.erase(words.begin(), words.end() - 3);
     // Very old dumps have none.
     bool known = words.empty() || words.size() == 3;

@@ -26,7 +26,7 @@ struct ImportFormat {
   bool steps_by_name = false;
   /// Normal and tangential directions are turned together (MercuryDPM: those of walls are).
   bool directions_turn_together = false;
-  /// A column density is that of spheres, in the plane, too.
+  /// A density, of a column or told, is that of spheres, in the plane, too.
   bool densities_of_spheres = false;
   /// Copies across periodic sides have numbers of their own; a column overlap tells their centres.
   bool copies_have_numbers = false;

@@ -22,9 +22,9 @@ const ImportFormat& find_import_format(const std::string& name) {
     if (format.name == name) return format;
     names.push_back(format.name);
   }
-  throw std::invalid_argument(
-      fmt::format("--from: unknown format \"{}\"; allowed: {}; did you mean {}?", name,
-                  fmt::join(names, ", "), continuum::nearest(name, names)));
+  throw std::invalid_argument(fmt::format("--from: unknown format \"{}\"; nearest: {}; allowed: {}",
+                                          name, continuum::nearest(name, names),
+                                          fmt::join(names, ", ")));
 }
 
 }  // namespace grainfield::coupling

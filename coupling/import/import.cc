@@ -22,23 +22,18 @@
 namespace grainfield::coupling {
 namespace {
 
-// A contact point farther than this many radii from its wall's plane is on another wall.
-constexpr double kOddNormal = 0.5;  // cosine of the angle to the line of centres
-constexpr double kOffWall = 2;
-constexpr double kPulling = 1e-3;  // of the mean force: a pull below it is rounding
-// Of the Coulomb limit and of the whole force: digits that files round away, and what moves slowly.
-constexpr double kBeyondFriction = 1e-3, kBeyondForce = 1e-6;
-
 // By its columns, under any of their names.
 TableKind kind_of(const ForeignTable& table, ColumnNames& names) {
   if (table.kind != TableKind::unknown) return table.kind;
   const TableColumns columns(table, names);
   const auto has = [&](const char* ours) { return columns.find(ours).index >= 0; };
-  if (has("i") && (has("j") || columns.find("wall"))) return TableKind::contacts;
-  if (columns.find("name") && columns.find("nx")) return TableKind::walls;
   // Forces and no places: contacts, of which a column of ids is missing.
   const bool forces = has("fx") || has("fnx") || has("fn");
   const bool sized = has("radius") || has("diameter") || has("outline");
+  // Beside places and sizes i and j are indices of a lattice, or moments of inertia.
+  const bool placed_grains = sized && !forces && has("x") && has("y") && has("id");
+  if (!placed_grains && has("i") && (has("j") || columns.find("wall"))) return TableKind::contacts;
+  if (!placed_grains && columns.find("name") && columns.find("nx")) return TableKind::walls;
   if (!sized && (has("i") || forces)) return TableKind::contacts;
   return TableKind::grains;
 }
@@ -52,9 +47,9 @@ ForeignTable table_of(const ArrayTable& table, TableKind kind) {
   std::vector<ArrayColumn> arrays;
   for (const auto& [name, column] : table.columns) {
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw std::invalid_argument(
-          fmt::format("{}: unknown column \"{}\"; allowed: {}; did you mean {}?", table.name, name,
-                      fmt::join(known, ", "), continuum::nearest(name, known)));
+      throw std::invalid_argument(fmt::format("{}: unknown column \"{}\"; nearest: {}; allowed: {}",
+                                              table.name, name, continuum::nearest(name, known),
+                                              fmt::join(known, ", ")));
     if (!arrays.empty() && column.rows() != arrays.front().rows())
       throw std::invalid_argument(fmt::format("{}: {} has {} values, {} has {}", table.name, name,
                                               column.rows(), names.front(), arrays.front().rows()));
@@ -270,27 +265,46 @@ void import_snapshots(const ImportOptions& options,
       require_unit(axis.bare, fmt::format("--periodic {}", "xyz"[axis.axis]), options.units);
   }
   ColumnNames names(format.columns);
-  for (const std::string& text : options.columns) names.choose(text);
+  names.choose(options.columns);
   StepList steps;
   const auto tell = [&](const char* phase, std::size_t done, std::size_t all) {
     if (options.progress) options.progress(phase, done, all);
   };
-  const auto steps_by_name = steps_of_names(options.files);
+  TableReader reader;
+  const ReadKeys read_keys = [&](const ForeignTable& table, TableKind kind) {
+    return row_keys(table, kind, names, reader);
+  };
+  std::vector<std::vector<ForeignTable>> found;
+  std::vector<NamedFile> named;
   for (std::size_t k = 0; k < options.files.size(); ++k) {
     tell("files looked through", k, options.files.size());
-    for (ForeignTable& table : format.scan(options.files[k], names)) {
-      if (format.steps_by_name) table.step = steps_by_name[k];
+    found.push_back(format.scan(options.files[k], names));
+    if (!format.steps_by_name) continue;
+    const auto& tables = found.back();
+    const auto grains = std::find_if(tables.begin(), tables.end(), [&](const ForeignTable& table) {
+      return kind_of(table, names) == TableKind::grains;
+    });
+    const bool any = grains != tables.end();
+    named.push_back({options.files[k], any, [&, k, at = grains - tables.begin(), any] {
+                       return any ? read_keys(found[k][static_cast<std::size_t>(at)],
+                                              TableKind::grains)
+                                  : RowKeys{};
+                     }});
+  }
+  const NamedSteps by_name = steps_of_names(named);
+  for (std::size_t k = 0; k < found.size(); ++k)
+    for (ForeignTable& table : found[k]) {
+      if (format.steps_by_name) table.step = by_name.steps[k];
       const TableKind kind = kind_of(table, names);
       steps.add(std::move(table), kind);
     }
-  }
+  found.clear();
   const std::string other_units = settle_units(units, steps);
+  steps.settle(format.steps_by_time, read_keys);
   names.take_taken();  // of the tables that are read it is told below
-  steps.settle(format.steps_by_time);
   const bool stepped = steps.stepped();
   if (!stepped && (options.all_steps || !options.steps.empty()))
     throw std::invalid_argument("--step: the files of " + format.name + " hold no time steps");
-  TableReader reader;
   const std::vector<StepChoice> chosen = steps.choose(options);
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     const StepChoice& choice = chosen[k];
@@ -314,8 +328,16 @@ void import_snapshots(const ImportOptions& options,
     const std::string plain = stepped ? fmt::format("/step_{}", choice.step) : "/packing";
     done.group =
         choice.group.empty() ? (options.group.empty() ? plain : options.group) : choice.group;
+    // A time that a column tells counts where the file and --time-step tell none.
+    const double of_column = done.snapshot.time;
     done.snapshot.time = time_of(tables.grains.front(), choice, options, done.warnings);
+    if (!tables.grains.front().time && options.time_step == 0) done.snapshot.time = of_column;
     for (std::string& text : steps.take_warnings()) done.warnings.push_back(std::move(text));
+    for (std::string& text : steps.take_notes()) done.notes.push_back(std::move(text));
+    if (k == 0) {
+      done.notes.insert(done.notes.end(), by_name.notes.begin(), by_name.notes.end());
+      done.warnings.insert(done.warnings.end(), by_name.warnings.begin(), by_name.warnings.end());
+    }
     for (std::string& text : names.take_taken()) done.notes.push_back(std::move(text));
     if (!other_units.empty()) done.notes.push_back(other_units);
     done.units = tables.grains.front().units;
@@ -346,126 +368,6 @@ dem::Snapshot import_arrays(const ImportOptions& options, const ArrayTable& grai
   out.attributes["imported_from"] = "arrays";
   dem::check_snapshot(out, grains.name);
   return out;
-}
-
-namespace {
-
-void check_coulomb_limit(const dem::Contact& c, PackingCheck& check) {
-  if (!std::isfinite(c.friction)) return;
-  ++check.known_friction;
-  const double most = c.friction * std::max(c.normal_force, 0.0) * (1 + kBeyondFriction);
-  check.beyond_friction +=
-      !c.sliding && std::fabs(c.tangential_force) > most + kBeyondForce * c.force.norm();
-}
-
-// Counts a contact of two disks or spheres, whose normal is along the line of centres, or of
-// polygons, whose normal is less than a right angle off it.
-void check_contact_normal(const dem::Snapshot& s, const dem::Contact& c, PackingCheck& check) {
-  const dem::Grain& i = s.grains[static_cast<std::size_t>(c.i)];
-  const dem::Grain& j = s.grains[static_cast<std::size_t>(c.j)];
-  const auto round = [](const dem::Grain& g) { return g.outline.empty() && g.axes.isZero(); };
-  if (!i.outline.empty() || !j.outline.empty()) {
-    ++check.polygon_pairs;
-    if (c.normal.dot(dem::second_place(s, c) - i.position) >= 0) return;
-    if (check.turned_normals++ > 0) return;
-    check.turned_i = i.id;
-    check.turned_j = j.id;
-    return;
-  }
-  if (!round(i) || !round(j)) return;
-  ++check.round_pairs;
-  const dem::Vec3 branch = dem::second_place(s, c) - i.position;
-  if (c.normal.dot(branch) >= kOddNormal * c.normal.norm() * branch.norm()) return;
-  if (check.odd_normals++ > 0) return;
-  check.odd_i = i.id;
-  check.odd_j = j.id;
-}
-
-// From grain i outwards through the contact: along the centres of round grains, whatever the file's
-// normal is.
-dem::Vec3 outwards(const dem::Snapshot& s, const dem::Contact& c) {
-  const dem::Grain& i = s.grains[static_cast<std::size_t>(c.i)];
-  const auto round = [](const dem::Grain& g) { return g.outline.empty() && g.axes.isZero(); };
-  if (c.j < 0 || !round(i) || !round(s.grains[static_cast<std::size_t>(c.j)])) return c.normal;
-  return dem::second_place(s, c) - i.position;
-}
-
-// Counts the contacts that pull, as they are and with one component of all forces turned.
-void count_pulling(const dem::Snapshot& s, double mean_force, PackingCheck& check) {
-  for (const dem::Contact& c : s.contacts) {
-    const dem::Vec3 parts = c.force.cwiseProduct(outwards(s, c).normalized());
-    const double along = parts.sum(), least = kPulling * mean_force;
-    check.bearing += std::fabs(along) > least;
-    check.pulling += along > least;
-    for (int axis = 0; axis < 3; ++axis) {
-      check.pulling_turned[static_cast<std::size_t>(axis)] += along - 2 * parts[axis] > least;
-    }
-  }
-}
-
-}  // namespace
-
-PackingCheck check_packing(const dem::Snapshot& s) {
-  PackingCheck check;
-  std::vector<dem::Vec3> resultant(s.grains.size(), dem::Vec3::Zero());
-  std::vector<bool> touched(s.grains.size(), false);
-  double force = 0;
-  dem::Vec3 support = dem::Vec3::Zero(), weight = dem::Vec3::Zero();
-  const auto free = [&](std::int64_t g) {
-    return g >= 0 && !s.grains[static_cast<std::size_t>(g)].fixed;
-  };
-  const auto add = [&](Eigen::Matrix3d& sum, std::int64_t grain, const dem::Vec3& arm,
-                       const dem::Vec3& f) {
-    const auto g = static_cast<std::size_t>(grain);
-    sum += f * arm.transpose();
-    resultant[g] += f;
-    touched[g] = true;
-  };
-  for (const dem::Contact& c : s.contacts) {
-    Eigen::Matrix3d& sum = c.j >= 0 ? check.pairs : check.walls;
-    add(sum, c.i, c.point - s.grains[static_cast<std::size_t>(c.i)].position, c.force);
-    if (c.j >= 0) add(sum, c.j, c.point - dem::second_place(s, c), -c.force);
-    if (c.j >= 0) check_contact_normal(s, c, check);
-    check_coulomb_limit(c, check);
-    force += c.force.norm() / static_cast<double>(s.contacts.size());
-    if (free(c.i) && !free(c.j)) support += c.force;
-    if (c.j < 0) {
-      const dem::Wall& wall = s.walls[static_cast<std::size_t>(-1 - c.j)];
-      ++check.wall_contacts;
-      if (wall.shape != "plane") continue;
-      const double off = std::abs((c.point - wall.point).dot(wall.normal));
-      check.off_wall_contacts += off > kOffWall * s.grains[static_cast<std::size_t>(c.i)].radius;
-    }
-    if (!free(c.i) && free(c.j)) support -= c.force;
-  }
-  count_pulling(s, force, check);
-  const dem::Vec3 up = -s.gravity.normalized();  // zero without gravity
-  double total = 0, squares = 0;
-  int count = 0;
-  for (std::size_t g = 0; g < s.grains.size(); ++g) {
-    if (s.grains[g].fixed) continue;
-    dem::Vec3 load = s.grains[g].mass * s.gravity;
-    if (s.grains[g].id == s.loaded_grain) load += s.applied_force;
-    weight += load;
-    const dem::Vec3 f = resultant[g] + load;
-    squares += std::pow(f.dot(up), 2);
-    if (!touched[g]) continue;
-    total += f.norm();
-    ++count;
-  }
-  if (force > 0 && count > 0) check.unbalanced_force_ratio = total / count / force;
-  const double g = s.gravity.norm();
-  if (g > 0 && !s.contacts.empty()) {
-    const dem::Vec3 down = s.gravity / g;
-    check.pairs_along_gravity = down.dot(check.pairs * down);
-    check.walls_along_gravity = down.dot(check.walls * down);
-    // 0 - 0 is +0 where -0 would be printed.
-    if (weight.dot(down) > 0) {
-      check.support_ratio = (0 - support.dot(down)) / weight.dot(down);
-      check.support_error = std::sqrt(squares) / weight.dot(down);
-    }
-  }
-  return check;
 }
 
 }  // namespace grainfield::coupling

@@ -58,8 +58,14 @@ struct ImportOptions {
   bool all_steps = false;
   double time_step = 0;  ///< s; a dump's time = step times this, where it gives no time itself
   std::string group;     ///< of a single snapshot; default /step_N, or /packing without steps
-  bool without_contacts = false;   ///< grains alone are enough
-  bool flip_forces = false;        ///< the files' forces act on j: all are turned
+  bool without_contacts = false;  ///< grains alone are enough
+  bool flip_forces = false;       ///< the files' forces act on j: all are turned
+  bool flip_pairs = false;        ///< those between grains alone
+  bool flip_walls = false;        ///< those with walls alone
+  /// -1 where the forces between grains, or with walls, are turned; else 1.
+  double sign_of(bool wall) const {
+    return flip_forces || (wall ? flip_walls : flip_pairs) ? -1 : 1;
+  }
   bool leave_out_distant = false;  ///< pairs across periodic boundaries are left out, and no cell
   std::string ids_file;  ///< a table of the files' ids and the grains' original ones; empty: none
   std::vector<PeriodicAxis> periodic;  ///< instead of those that a dump tells
@@ -132,7 +138,12 @@ struct PackingCheck {
   /// mean force. `pulling_turned`: how many would with the sign of one component turned.
   int pulling = 0;
   std::array<int, 3> pulling_turned{};
-  int bearing = 0;            ///< contacts whose part along the normal, of either sign, is above it
+  int bearing = 0;  ///< contacts whose part along the normal, of either sign, is above it
+  int pulling_walls = 0, bearing_walls = 0;  ///< of these, those with walls
+  /// Pairs of unknown friction, and those of them that bear more tangential than normal force.
+  int unknown_friction = 0, steep = 0;
+  double weight = 0;          ///< of the free grains, with the applied force along gravity, N
+  dem::Vec3 across{0, 0, 0};  ///< force of walls and fixed grains across gravity, N
   int wall_contacts = 0;      ///< contacts with walls
   int off_wall_contacts = 0;  ///< of them, those whose point is over two radii off the wall's plane
   int round_pairs = 0;        ///< contacts between round grains

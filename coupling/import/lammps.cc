@@ -18,6 +18,8 @@ ImportFormat lammps_format() {
       {"diameter_z", "shapez"},
       {"i", "patom1"},
       {"i", "id1"},
+      {"i", "natom1"},
+      {"j", "natom2"},
       {"j", "patom2"},
       {"j", "id2"},
       {"fnx", "fx"},

@@ -65,6 +65,11 @@ class MercuryScan {
         fmt::format("{}: found \"{}\", expected {}", lines_.where(), line.substr(0, 60), wanted));
   }
 
+  static std::shared_ptr<const Names> columns_of_contacts() {
+    static const auto columns = names_of("time i j px py pz overlap slip fn ft nx ny nz tx ty tz");
+    return columns;
+  }
+
   std::vector<double> numbers(std::string_view line, const std::string& wanted) const {
     std::vector<std::string_view> words;
     split(line, ' ', words);
@@ -84,6 +89,10 @@ class MercuryScan {
     static const auto plane = names_of("x y vx vy radius angle spin info");
     const std::string wanted = "\"N time xmin ymin zmin xmax ymax zmax\" (in the plane without z)";
     const std::vector<double> head = numbers(line, wanted);
+    if (head.size() == columns_of_contacts()->size())
+      refuse(line,
+             fmt::format("{}; a .fstat has three lines \"# ...\" before the contacts of a time",
+                         wanted));
     if ((head.size() != 8 && head.size() != 6) || head[0] != std::floor(head[0]) || head[0] < 0)
       refuse(line, wanted);
     table_.kind = TableKind::grains;
@@ -107,7 +116,7 @@ class MercuryScan {
 
   // `head`: "# time version".
   bool contacts(const std::string& head) {
-    static const auto columns = names_of("time i j px py pz overlap slip fn ft nx ny nz tx ty tz");
+    const auto columns = columns_of_contacts();
     const std::vector<double> told = numbers(head.substr(1), "\"# time version\"");
     if (told.empty()) refuse(head, "\"# time version\"");
     std::string_view line;
@@ -152,6 +161,7 @@ ImportFormat mercury_format() {
   format.name = "mercury";
   format.summary = "MercuryDPM's .data of the particles and .fstat of their contacts";
   format.scan = scan;
+  format.densities_of_spheres = true;
   format.rows_are_ids = true;
   format.steps_by_time = true;
   format.directions_turn_together = true;

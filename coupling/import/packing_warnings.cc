@@ -16,6 +16,9 @@ constexpr double kUnbalanced = 0.1;  // unbalanced force ratio of a packing that
 constexpr double kSupport = 0.1;     // of the weight: missing or too much at walls
 constexpr double kClearSupport = 0.02, kClearErrors = 3;  // or beyond both: share, its own errors
 constexpr double kManyPull = 0.01;                        // of the contacts
+constexpr double kMostPull = 0.9;  // of those between grains, or with walls: their signs are turned
+constexpr double kManySteep = 0.1;  // of the pairs, with more tangential than normal force
+constexpr int kFewSteep = 2;
 constexpr int kExplains = 10;  // a turned sign is the cause where it leaves a tenth of the pulls
 constexpr double kOtherUnits = 0.02;  // of the weight: less is no matter of some missing contacts
 constexpr double kLeastDensity = 10, kMostDensity = 30000;    // kg/m3, kg/m2
@@ -36,6 +39,10 @@ std::string unsupported(const PackingCheck& check) {
   if (!(off > kSupport) && !(off > kClearSupport && off > kClearErrors * check.support_error)) {
     return "";
   }
+  // Gravity against the force across it.
+  const auto down = [&](Eigen::Index axis) {
+    return 0 - 9.81 * std::round(check.across[axis] / check.across.norm());
+  };
   const char* why = "gravity or masses are too small, or contacts stand there twice";
   if (check.support_ratio < 1) {
     why =
@@ -44,6 +51,13 @@ std::string unsupported(const PackingCheck& check) {
   }
   if (check.support_ratio < 0) {
     why = "gravity points the other way (--gravity), or the forces from below do";
+  } else if (check.across.norm() > (1 - kSupport) * check.weight) {
+    return fmt::format(
+        "walls and fixed grains carry {:.3g} of the weight along gravity and {:.3g} along ({:.2g}, "
+        "{:.2g}, {:.2g}): is that upwards (--gravity {:g},{:g},{:g})?",
+        check.support_ratio, check.across.norm() / check.weight, check.across.x() / check.weight,
+        check.across.y() / check.weight, check.across.z() / check.weight, down(0), down(1),
+        down(2));
   } else if (check.wall_contacts > 0 && check.support_ratio < kOtherUnits) {
     why =
         "contacts with the floor are missing, or forces, lengths and masses are not all in SI "
@@ -62,7 +76,34 @@ std::string turned_component(const PackingCheck& check) {
   return fmt::format("f{}", "xyz"[least - check.pulling_turned.begin()]);
 }
 
+// Whether the forces between grains alone, or those with walls alone, have the other sign.
+bool pull_together(int pulling, int bearing) {
+  return pulling > 0 && pulling >= kMostPull * bearing;
+}
+bool push_together(int pulling, int bearing) { return pulling <= (1 - kMostPull) * bearing; }
+
+std::string turned_pairs_or_walls(const PackingCheck& check) {
+  const int pairs = check.bearing - check.bearing_walls;
+  const int pulling_pairs = check.pulling - check.pulling_walls;
+  const bool of_pairs = pull_together(pulling_pairs, pairs) &&
+                        push_together(check.pulling_walls, check.bearing_walls);
+  const bool of_walls = pull_together(check.pulling_walls, check.bearing_walls) &&
+                        push_together(pulling_pairs, pairs);
+  if (of_pairs == of_walls || check.bearing_walls == 0 || pairs == 0 ||
+      !turned_component(check).empty())
+    return "";
+  return fmt::format(
+      "{} of {} contacts {} pull, {} of {} {} push: forces count on grain i, by j or the wall; "
+      "turn the sign of those {} alone (import --flip-forces={}) unless they stick",
+      of_pairs ? pulling_pairs : check.pulling_walls, of_pairs ? pairs : check.bearing_walls,
+      of_pairs ? "between grains" : "with walls",
+      of_pairs ? check.bearing_walls - check.pulling_walls : pairs - pulling_pairs,
+      of_pairs ? check.bearing_walls : pairs, of_pairs ? "with walls" : "between grains",
+      of_pairs ? "between grains" : "with walls", of_pairs ? "pairs" : "walls");
+}
+
 std::string pulling(const PackingCheck& check) {
+  if (std::string text = turned_pairs_or_walls(check); !text.empty()) return text;
   if (!(check.pulling > kManyPull * check.bearing)) return "";
   const std::string component = turned_component(check);
   return fmt::format(
@@ -74,6 +115,15 @@ std::string pulling(const PackingCheck& check) {
           : fmt::format(
                 "turn the sign of {} alone, which leaves {} that pull", component,
                 *std::min_element(check.pulling_turned.begin(), check.pulling_turned.end())));
+}
+
+// Where friction is unknown: places, ids and axes that do not belong to the forces.
+std::string steep_forces(const PackingCheck& check) {
+  if (check.steep < kFewSteep || !(check.steep > kManySteep * check.unknown_friction)) return "";
+  return fmt::format(
+      "{} of {} contacts between grains bear more tangential than normal force (friction above 1): "
+      "do ids, axes and signs of forces fit the places?",
+      check.steep, check.unknown_friction);
 }
 
 std::string off_walls(const PackingCheck& check) {
@@ -109,27 +159,32 @@ std::string beyond_friction(const PackingCheck& check) {
 
 // One of each kind; empty: none.
 std::vector<std::string> warning_texts(const PackingCheck& check) {
-  return {unbalanced(check),  unsupported(check),    pulling(check),        off_walls(check),
-          odd_normals(check), turned_normals(check), beyond_friction(check)};
+  return {unbalanced(check),  unsupported(check),    pulling(check),         off_walls(check),
+          odd_normals(check), turned_normals(check), beyond_friction(check), steep_forces(check)};
 }
 
 }  // namespace
 
 GrainSizes grain_sizes(const dem::Snapshot& packing) {
-  double mass = 0, volume = 0, spheres = 0;
-  bool any = false;
+  double mass = 0, volume = 0, spheres = 0, diameters = 0;
+  int count = 0;
+  const auto free = [](const dem::Grain& grain) { return !grain.fixed; };
+  const bool any = std::any_of(packing.grains.begin(), packing.grains.end(), free);
   for (const dem::Grain& grain : packing.grains) {
-    if (grain.fixed) continue;
+    // Where all are fixed they are what there is.
+    if (any && grain.fixed) continue;
     mass += grain.mass;
     volume += grain.volume;
     spheres += 4.0 / 3 * std::numbers::pi * std::pow(grain.radius, 3);
-    any = true;
+    diameters += 2 * grain.radius;
+    ++count;
   }
-  if (!any) return {kNan, kNan, kNan};
-  return {mass / volume, mass / spheres, mean_diameter(packing)};
+  if (count == 0) return {kNan, kNan, kNan};
+  return {mass / volume, mass / spheres, any ? mean_diameter(packing) : diameters / count};
 }
 
 std::string tension_in(const PackingCheck& check) {
+  if (std::string text = turned_pairs_or_walls(check); !text.empty()) return text;
   const double along = check.pairs_along_gravity + check.walls_along_gravity;
   // Without gravity, or across it, the mean stress tells.
   const double mean = check.pairs.trace() + check.walls.trace();

@@ -9,15 +9,16 @@
 
 namespace grainfield::coupling {
 
-/// Why the contacts of a packing pull where grains push: the stress along gravity, or the mean
-/// stress, pairs and walls together, is tension (positive); one sentence with the remedy. Empty:
-/// both are compression, or there is no contact.
+/// Why the contacts of a packing pull where grains push: nearly all between grains, or nearly all
+/// with walls, pull and the others push, or the stress along gravity, or the mean stress, pairs and
+/// walls together, is tension (positive); one sentence with the remedy. Empty: none of these.
 std::string tension_in(const PackingCheck& check);
 
 /// What makes fits of it doubtful, a sentence each: an unbalanced force ratio above 0.1, walls and
 /// fixed grains that carry another part of the weight than 0.9 to 1.1 (or one that is off by 2 %
 /// and three of its errors), one in a hundred contacts or more that pull, contacts with walls more
-/// than two radii off them, normals far off the line of centres, tangential forces beyond friction.
+/// than two radii off them, normals far off the line of centres, tangential forces beyond friction
+/// or, where it is unknown, above the normal ones in a tenth of the pairs.
 /// `tension_in` aside.
 std::vector<std::string> warnings_of(const PackingCheck& check);
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "dem/snapshot/number.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -13,14 +15,40 @@ bool ends_quoted(std::string_view line) {
   return std::count(line.begin(), line.end(), '"') % 2 == 1;
 }
 
+// Excel's text ="1" is 1.
+std::string_view without_formula(std::string_view value) {
+  const bool text = value.size() > 3 && value.starts_with("=\"") && value.ends_with('"');
+  return text ? value.substr(2, value.size() - 3) : value;
+}
+
 }  // namespace
+
+bool is_no_value(std::string_view value) {
+  for (const std::string_view word : {"", "NA", "<NA>", "None", "N/A", "n/a", "-", "--"})
+    if (value == word) return true;
+  // Errors of spreadsheets, in any language: "#N/A", "#VALEUR!", "#DIV/0!".
+  if (value.size() < 3 || value.front() != '#') return false;
+  const auto in_error = [](char ch) {
+    return (ch >= 'A' && ch <= 'Z') || std::string_view("/!?0").find(ch) != std::string_view::npos;
+  };
+  return value[1] >= 'A' && value[1] <= 'Z' &&
+         std::all_of(value.begin() + 1, value.end(), in_error);
+}
 
 std::string_view without_comment(std::string_view line, char separator) {
   const std::size_t sign = line.rfind('#');
   if (sign == std::string_view::npos || sign == 0) return line;
   if (line[sign - 1] != ' ' && line[sign - 1] != '\t') return line;
   const std::string_view behind = line.substr(sign);
+  if (separator != ' ' && is_no_value(trimmed(behind))) return line;
   if (separator != ' ' && behind.find(separator) != std::string_view::npos) return line;
+  // "sand #1" is a value: a word goes on to a sign without a blank behind it.
+  if (separator != ' ' && behind.size() > 1 && behind[1] != ' ') {
+    const std::size_t before = line.rfind(separator, sign);
+    const std::size_t start = before == std::string_view::npos ? 0 : before + 1;
+    const std::string_view value = trimmed(line.substr(start, sign - start));
+    if (!value.empty() && !dem::parse_number(value)) return line;
+  }
   return behind.find('"') == std::string_view::npos ? trimmed(line.substr(0, sign)) : line;
 }
 
@@ -58,7 +86,7 @@ void RowParts::part_quoted(std::string_view line, char separator) {
     const std::size_t start = line.find_first_not_of(separator == '\t' ? " " : " \t", at);
     if (start == std::string_view::npos || line[start] != '"') {
       const std::size_t end = std::min(line.find(separator, at), line.size());
-      fields_.push_back(trimmed(line.substr(at, end - at)));
+      fields_.push_back(without_formula(trimmed(line.substr(at, end - at))));
       if (end == line.size()) return;
       at = end + 1;
       continue;

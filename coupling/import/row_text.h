@@ -28,6 +28,9 @@ class RowParts {
   std::string joined_;             // lines of a row over several
 };
 
+/// Whether it stands for an empty cell of a spreadsheet, of R or pandas: NA, None, -, #N/A, #NV.
+bool is_no_value(std::string_view value);
+
 /// Without a comment behind the last value, "... # first".
 std::string_view without_comment(std::string_view line, char separator);
 

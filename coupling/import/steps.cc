@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "coupling/import/step_names.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -90,15 +92,32 @@ void StepList::drop_step_numbers() {
   for (Entry& entry : entries_) entry.table.step.reset();
 }
 
-void StepList::drop_repeated(std::vector<ForeignTable>& tables) {
+const RowKeys& StepList::keys_of(const ForeignTable& table, TableKind kind) {
+  const auto [at, fresh] = keys_.try_emplace(
+      fmt::format("{}:{}:{}", table.file, table.header_line, table.step.value_or(0)));
+  if (fresh) at->second = read_keys_(table, kind);
+  return at->second;
+}
+
+void StepList::drop_repeated(std::vector<ForeignTable>& tables, TableKind kind) {
   for (std::size_t k = 0; k < tables.size();) {
+    bool pieces = false;
     const auto again = [&](const ForeignTable& other) {
-      return other.file == tables[k].file && *other.columns == *tables[k].columns &&
-             other.header_line > tables[k].header_line && other.broken.empty() &&
-             other.arrays == nullptr;
+      if (other.file != tables[k].file || *other.columns != *tables[k].columns ||
+          other.header_line <= tables[k].header_line || !other.broken.empty() ||
+          other.arrays != nullptr)
+        return false;
+      const bool apart = are_apart(keys_of(tables[k], kind), keys_of(other, kind));
+      pieces = pieces || apart;
+      return !apart;
     };
     const auto last = std::find_if(tables.rbegin(), tables.rend(), again);
     if (last == tables.rend()) {
+      if (pieces)
+        notes_.push_back(fmt::format(
+            "{}: step {} is there more than once, each time with other {}: "
+            "files that were joined; all of them count",
+            tables[k].file, *tables[k].step, kind == TableKind::grains ? "grains" : "contacts"));
       ++k;
       continue;
     }
@@ -109,9 +128,11 @@ void StepList::drop_repeated(std::vector<ForeignTable>& tables) {
                     tables[k].file, *tables[k].step, tables[k].header_line, last->header_line));
     tables.erase(tables.begin() + static_cast<std::ptrdiff_t>(k));
   }
+  keys_.clear();
 }
 
-void StepList::settle(bool by_time) {
+void StepList::settle(bool by_time, const ReadKeys& read_keys) {
+  read_keys_ = read_keys;
   if (by_time) number_by_time();
   drop_step_numbers();
   for (; !entries_.empty(); entries_.pop_front()) {
@@ -137,44 +158,129 @@ void StepList::settle(bool by_time) {
   if (steps_.empty()) throw std::invalid_argument(broken_);
   if (!stepped_) return;
   for (auto& [step, tables] : steps_) {
-    drop_repeated(tables.grains);
-    drop_repeated(tables.contacts);
+    drop_repeated(tables.grains, TableKind::grains);
+    drop_repeated(tables.contacts, TableKind::contacts);
   }
-  find_parts();
+  find_series();
+  for (const TableKind kind : {TableKind::grains, TableKind::contacts}) find_parts(kind);
+  keys_.clear();
 }
 
-// Files of contacts that begin with one step and share more are parts of one table (a file for each
-// processor or kind of pairs). A continued run's begin later.
-void StepList::find_parts() {
-  std::map<std::string, std::vector<long long>> steps;
+const std::vector<ForeignTable>& StepTables::of(TableKind kind) const {
+  return kind == TableKind::grains ? grains : kind == TableKind::walls ? walls : contacts;
+}
+
+void StepList::find_series() {
+  std::map<std::string, std::set<long long>> steps;
   for (const auto& [step, tables] : steps_)
-    for (const ForeignTable& table : tables.contacts)
-      if (steps[table.file].empty() || steps[table.file].back() != step)
-        steps[table.file].push_back(step);
-  std::erase_if(steps, [](const auto& file) { return file.second.size() < 2; });
+    for (const TableKind kind : {TableKind::grains, TableKind::contacts})
+      for (const ForeignTable& table : tables.of(kind)) steps[table.file].insert(step);
+  series_ = series_of_files(steps);
+}
+
+StepList::Pieces StepList::pieces_of(const std::vector<ForeignTable>& tables) const {
+  Pieces out;
+  for (const ForeignTable& table : tables) ++out[{series_.at(table.file), table.columns.get()}];
+  return out;
+}
+
+RowKeys StepList::keys_of_series(const std::string& series, long long step, TableKind kind) {
+  RowKeys out;
+  for (const ForeignTable& table : steps_.at(step).of(kind)) {
+    if (series_.at(table.file) != series) continue;
+    const RowKeys& some = keys_of(table, kind);
+    out.insert(out.end(), some.begin(), some.end());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+StepList::Relation StepList::relation_of(const std::string& a, const std::string& b,
+                                         const SeriesSteps& steps, TableKind kind) {
+  const std::vector<long long>&of_a = steps.at(a), &of_b = steps.at(b);
+  std::vector<long long> both;
+  std::set_intersection(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
+                        std::back_inserter(both));
+  for (const long long step : both) {
+    const RowKeys one = keys_of_series(a, step, kind), other = keys_of_series(b, step, kind);
+    if (one.empty() || other.empty()) continue;
+    return are_apart(one, other) ? Relation::parts : Relation::continued;
+  }
+  return both.size() >= 2 && of_a.front() == of_b.front() ? Relation::parts : Relation::none;
+}
+
+// Series with common rows at a step are runs that continue each other, and go on as one. Those with
+// rows of their own are parts of one table (a file for each processor or kind of pairs). Where no
+// rows tell it, parts begin with one step and share more.
+void StepList::find_parts(TableKind kind) {
+  SeriesSteps steps;
+  for (const auto& [step, tables] : steps_) {
+    for (const ForeignTable& table : tables.of(kind)) {
+      std::vector<long long>& own = steps[series_.at(table.file)];
+      if (own.empty() || own.back() != step) own.push_back(step);
+    }
+    for (const auto& [table, count] : pieces_of(tables.of(kind))) {
+      std::size_t& most = most_pieces_[kind][table];
+      most = std::max(most, count);
+    }
+  }
+  // Groups of series, and of two that are related the groups joined.
+  using Groups = std::vector<std::set<std::string>>;
+  const auto join = [](Groups& groups, const std::string& a, const std::string& b) {
+    std::set<std::string> all{a, b};
+    for (auto at = groups.begin(); at != groups.end();) {
+      const bool with = at->contains(a) || at->contains(b);
+      if (with) all.merge(*at);
+      at = with ? groups.erase(at) : std::next(at);
+    }
+    groups.push_back(std::move(all));
+  };
+  Groups runs, parts;
+  std::vector<std::pair<std::string, std::string>> apart;
   for (auto a = steps.begin(); a != steps.end(); ++a)
     for (auto b = std::next(a); b != steps.end(); ++b) {
-      if (a->second.front() != b->second.front()) continue;
-      std::vector<long long> both;
-      std::set_intersection(a->second.begin(), a->second.end(), b->second.begin(), b->second.end(),
-                            std::back_inserter(both));
-      if (both.size() >= 2) parts_.emplace_back(a->first, b->first);
+      // What has the same steps lacks none of them.
+      if (a->second == b->second) continue;
+      const Relation relation = relation_of(a->first, b->first, steps, kind);
+      if (relation == Relation::continued) join(runs, a->first, b->first);
+      if (relation == Relation::parts) apart.emplace_back(a->first, b->first);
     }
+  std::map<std::string, std::string>& run_of = run_of_[kind];
+  std::map<std::string, std::set<long long>> of_run;
+  for (const auto& [series, own] : steps) {
+    run_of[series] = series;
+    for (const auto& run : runs)
+      if (run.contains(series)) run_of[series] = *run.begin();
+    of_run[run_of[series]].insert(own.begin(), own.end());
+  }
+  for (const auto& [a, b] : apart)
+    if (of_run[run_of[a]] != of_run[run_of[b]]) join(parts, run_of[a], run_of[b]);
+  parts_[kind] = std::move(parts);
+}
+
+bool StepList::has_all_parts(const std::vector<ForeignTable>& tables, TableKind kind) const {
+  if (series_.empty()) return true;
+  for (const auto& [table, count] : pieces_of(tables))
+    if (count < most_pieces_.at(kind).at(table)) return false;
+  std::set<std::string> there;
+  for (const ForeignTable& table : tables)
+    there.insert(run_of_.at(kind).at(series_.at(table.file)));
+  for (const std::set<std::string>& all : parts_.at(kind)) {
+    const auto met = std::count_if(all.begin(), all.end(),
+                                   [&](const std::string& one) { return there.contains(one); });
+    if (met != 0 && met != static_cast<std::ptrdiff_t>(all.size())) return false;
+  }
+  return true;
 }
 
 bool StepList::is_whole(const StepTables& tables, bool without_contacts) const {
   const auto good = [](const ForeignTable& table) { return table.broken.empty(); };
   if (tables.grains.empty() || !std::all_of(tables.grains.begin(), tables.grains.end(), good) ||
-      !std::all_of(tables.contacts.begin(), tables.contacts.end(), good))
+      !std::all_of(tables.contacts.begin(), tables.contacts.end(), good) ||
+      !has_all_parts(tables.grains, TableKind::grains))
     return false;
   if (without_contacts && tables.contacts.empty()) return true;
-  const auto of_file = [&](const std::string& file) {
-    return std::any_of(tables.contacts.begin(), tables.contacts.end(),
-                       [&](const ForeignTable& table) { return table.file == file; });
-  };
-  for (const auto& [a, b] : parts_)
-    if (of_file(a) != of_file(b)) return false;
-  return !tables.contacts.empty() &&
+  return !tables.contacts.empty() && has_all_parts(tables.contacts, TableKind::contacts) &&
          std::all_of(contact_kinds_.begin(), contact_kinds_.end(), [&](const auto* kind) {
            return std::any_of(
                tables.contacts.begin(), tables.contacts.end(),
@@ -235,6 +341,9 @@ void StepList::require_whole(long long step, const ImportOptions& options) const
   const std::string files = fmt::format("{}", fmt::join(options.files, ", "));
   if (tables.grains.empty())
     throw std::invalid_argument(fmt::format("no table of grains{} in {}{}", which, files, others));
+  if (!has_all_parts(tables.grains, TableKind::grains))
+    throw std::invalid_argument(
+        fmt::format("not all tables of grains{} in {}{}", which, files, others));
   if (!tables.contacts.empty() && options.without_contacts) return;
   const auto steps_with = [&](bool grains) {
     std::vector<long long> out;
@@ -261,6 +370,7 @@ void StepList::require_whole(long long step, const ImportOptions& options) const
                                 : others));
 }
 
+std::vector<std::string> StepList::take_notes() { return std::exchange(notes_, {}); }
 std::vector<std::string> StepList::take_warnings() { return std::exchange(warnings_, {}); }
 
 }  // namespace grainfield::coupling

@@ -4,16 +4,20 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coupling/import/import.h"
+#include "coupling/import/row_keys.h"
 
 namespace grainfield::coupling {
 
 /// The tables of one time step; of a format without steps all of them.
 struct StepTables {
   std::vector<ForeignTable> grains, contacts, walls;
+  const std::vector<ForeignTable>& of(TableKind kind) const;
 };
 
 class StepList {
@@ -23,8 +27,9 @@ class StepList {
   /// Changes tables that were added, before settle().
   void for_each(const std::function<void(ForeignTable&)>& change);
   /// Once all are there: numbers steps that have times only, drops numbers that tell nothing apart,
-  /// and keeps of a step that a file has more than once the last (with a warning each).
-  void settle(bool by_time);
+  /// and keeps of a step that a file has more than once the last (with a warning each), or all
+  /// where they are pieces with rows of their own.
+  void settle(bool by_time, const ReadKeys& read_keys);
 
   /// Whether the files tell steps.
   bool stepped() const { return stepped_; }
@@ -38,6 +43,8 @@ class StepList {
 
   /// What is doubtful, a sentence each; forgets them.
   std::vector<std::string> take_warnings();
+  /// What was decided, likewise.
+  std::vector<std::string> take_notes();
 
  private:
   struct Entry {
@@ -48,18 +55,36 @@ class StepList {
   void share_names(ForeignTable& table);
   void number_by_time();
   void drop_step_numbers();
-  void find_parts();
-  void drop_repeated(std::vector<ForeignTable>& tables);
+  void drop_repeated(std::vector<ForeignTable>& tables, TableKind kind);
+  void find_series();
+  void find_parts(TableKind kind);
+  using SeriesSteps = std::map<std::string, std::vector<long long>>;
+  enum class Relation { none, parts, continued };
+  Relation relation_of(const std::string& a, const std::string& b, const SeriesSteps& steps,
+                       TableKind kind);
+  const RowKeys& keys_of(const ForeignTable& table, TableKind kind);
+  RowKeys keys_of_series(const std::string& series, long long step, TableKind kind);
+  bool has_all_parts(const std::vector<ForeignTable>& tables, TableKind kind) const;
   bool is_whole(const StepTables& tables, bool without_contacts) const;
   std::vector<long long> whole_steps(bool without_contacts) const;
 
   std::deque<Entry> entries_;
   std::vector<std::shared_ptr<const std::vector<std::string>>> names_;
   std::map<long long, StepTables> steps_;
-  std::vector<std::string> warnings_;
+  std::vector<std::string> warnings_, notes_;
+  ReadKeys read_keys_;
+  std::map<std::string, RowKeys> keys_;  ///< that were read, by file and line
   /// Kinds of tables of contacts: by their columns.
   std::vector<const std::vector<std::string>*> contact_kinds_;
-  std::vector<std::pair<std::string, std::string>> parts_;  ///< files that have all steps both
+  std::map<std::string, std::string> series_;  ///< of each file
+  /// Of each series the run that it continues, by the name of one of them.
+  std::map<TableKind, std::map<std::string, std::string>> run_of_;
+  /// Runs that are parts of one table: a step has all of them or none.
+  std::map<TableKind, std::vector<std::set<std::string>>> parts_;
+  /// Tables of a series with the same columns in one step, at most.
+  using Pieces = std::map<std::pair<std::string, const std::vector<std::string>*>, std::size_t>;
+  Pieces pieces_of(const std::vector<ForeignTable>& tables) const;
+  std::map<TableKind, Pieces> most_pieces_;
   bool stepped_ = false;
   std::string broken_;  ///< the first table that is truncated
 };

@@ -18,31 +18,60 @@ const std::map<std::string, Synonyms>& all_synonyms() {
         {"number", "no", "index", "label", "name"}}},
       {"x",
        {{"xpos", "posx", "positionx", "position0", "centrex", "centerx", "coordx", "xcoord",
-         "coordinatex", "coordinates0", "points0"},
+         "coordinatex", "coordinates0", "points0", "coord0", "pos0"},
         {"xc", "cx", "x1"}}},
       {"y",
        {{"ypos", "posy", "positiony", "position1", "centrey", "centery", "coordy", "ycoord",
-         "coordinatey", "coordinates1", "points1"},
+         "coordinatey", "coordinates1", "points1", "coord1", "pos1"},
         {"yc", "cy", "x2"}}},
       {"z",
        {{"zpos", "posz", "positionz", "position2", "centrez", "centerz", "coordz", "zcoord",
-         "coordinatez", "coordinates2", "points2"},
+         "coordinatez", "coordinates2", "points2", "coord2", "pos2"},
         {"zc", "cz", "x3"}}},
-      {"vx", {{"velx", "velocityx", "xvel", "velocity0", "xvelocity"}, {"v1", "ux", "vel0", "v0"}}},
-      {"vy", {{"vely", "velocityy", "yvel", "velocity1", "yvelocity"}, {"v2", "uy"}}},
-      {"vz", {{"velz", "velocityz", "zvel", "velocity2", "zvelocity"}, {"v3", "uz"}}},
+      {"vx",
+       {{"velx", "velocityx", "xvel", "velocity0", "xvelocity", "linvelvec0", "linearvelocity0",
+         "linearvelocityx"},
+        {"v1", "ux", "v0"},
+        {"v0", "vel0"}}},
+      {"vy",
+       {{"vely", "velocityy", "yvel", "velocity1", "yvelocity", "linvelvec1", "linearvelocity1",
+         "linearvelocityy"},
+        {"v2", "uy"},
+        {"v1", "vel1"}}},
+      {"vz",
+       {{"velz", "velocityz", "zvel", "velocity2", "zvelocity", "linvelvec2", "linearvelocity2",
+         "linearvelocityz"},
+        {"v3", "uz"},
+        {"v2", "vel2"}}},
+      {"spin",
+       {{"omegaz", "omega2", "angularvelocityz", "angularvelocity2", "angvelz", "angvelvec2"},
+        {"wz", "omega", "angularvelocity"},
+        {"w2", "angvel2"}}},
+      {"spin_x",
+       {{"omegax", "omega0", "angularvelocityx", "angularvelocity0", "angvelx", "angvelvec0"},
+        {"wx"},
+        {"w0", "angvel0"}}},
+      {"spin_y",
+       {{"omegay", "omega1", "angularvelocityy", "angularvelocity1", "angvely", "angvelvec1"},
+        {"wy"},
+        {"w1", "angvel1"}}},
+      {"ix", {{"image0", "imageflag0", "imagex"}, {}, {"i0"}}},
+      {"iy", {{"image1", "imageflag1", "imagey"}, {}, {"i1"}}},
+      {"iz", {{"image2", "imageflag2", "imagez"}, {}, {"i2"}}},
       {"radius", {{"rad", "r", "radii", "particleradius"}, {"rp"}}},
       {"diameter", {{"diam", "dia", "particlediameter"}, {"d", "dp", "size"}}},
       {"mass", {{"m", "particlemass"}, {}}},
       {"density", {{"rho", "dens", "particledensity"}, {"rhop"}}},
       {"i",
        {{"id1", "idi", "ida", "particle1", "particlei", "particleid1", "particle1id", "grain1",
-         "grain1id", "grainid1", "ball1", "ball1id", "body1", "end1", "end1id", "bodyid1", "atom1"},
-        {"p1", "first", "from", "a", "element1"}}},
+         "grain1id", "grainid1", "ball1", "ball1id", "body1", "end1", "end1id", "bodyid1", "atom1",
+         "atomi"},
+        {"p1", "first", "from", "a", "element1", "source"}}},
       {"j",
        {{"id2", "idj", "idb", "particle2", "particlej", "particleid2", "particle2id", "grain2",
-         "grain2id", "grainid2", "ball2", "ball2id", "body2", "end2", "end2id", "bodyid2", "atom2"},
-        {"p2", "second", "to", "b", "element2"}}},
+         "grain2id", "grainid2", "ball2", "ball2id", "body2", "end2", "end2id", "bodyid2", "atom2",
+         "atomj"},
+        {"p2", "second", "to", "b", "element2", "target"}}},
       {"fx", {{"forcex", "xforce", "force0", "contactforcex", "globalforcex"}, {"f1", "ftotx"}}},
       {"fy", {{"forcey", "yforce", "force1", "contactforcey", "globalforcey"}, {"f2", "ftoty"}}},
       {"fz", {{"forcez", "zforce", "force2", "contactforcez", "globalforcez"}, {"f3", "ftotz"}}},
@@ -95,6 +124,26 @@ std::string plain_column_name(const std::string& name) {
   return out;
 }
 
+std::string counted_from_zero(const std::string& plain, const std::vector<std::string>& all) {
+  static const std::set<std::string> stems = [] {
+    std::set<std::string> out;
+    for (const auto& [ours, others] : all_synonyms())
+      for (const auto* names : {&others.sure, &others.components})
+        for (const std::string& name : *names)
+          if (name.ends_with('0')) out.insert(name.substr(0, name.size() - 1));
+    return out;
+  }();
+  if (plain.empty() || plain.back() < '1' || plain.back() > '3') return plain;
+  const std::string stem = plain.substr(0, plain.size() - 1);
+  const auto there = [&](const char* number) {
+    return std::find(all.begin(), all.end(), stem + number) != all.end();
+  };
+  if (stems.find(stem) == stems.end() || there("0")) return plain;
+  // Half a vector is none.
+  if (!there("1") || !there("2")) return "";
+  return stem + static_cast<char>(plain.back() - 1);
+}
+
 const Synonyms& synonyms_of(const std::string& ours) {
   static const Synonyms none;
   const auto at = all_synonyms().find(ours);
@@ -106,9 +155,18 @@ std::string same_meaning(const std::string& ours, const std::vector<std::string>
   const Synonyms& known = synonyms_of(ours);
   wanted.insert(wanted.end(), known.sure.begin(), known.sure.end());
   wanted.insert(wanted.end(), known.likely.begin(), known.likely.end());
-  for (const std::string& word : wanted)
-    for (const std::string& column : columns)
-      if (plain_column_name(column) == plain_column_name(word)) return column;
+  const auto column_of = [&](const std::string& word) {
+    const auto at = std::find_if(columns.begin(), columns.end(), [&](const std::string& column) {
+      return plain_column_name(column) == plain_column_name(word);
+    });
+    return at == columns.end() ? std::string() : *at;
+  };
+  for (std::string word : wanted) {
+    // Components may be counted from 0: with x0 there, x1 is the second.
+    const bool counted = !word.empty() && word.back() >= '1' && word.back() <= '3';
+    if (counted && !column_of(word.substr(0, word.size() - 1) + "0").empty()) --word.back();
+    if (const std::string column = column_of(word); !column.empty()) return column;
+  }
   return "";
 }
 

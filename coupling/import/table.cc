@@ -9,35 +9,12 @@
 #include <stdexcept>
 
 #include "continuum/model.h"
+#include "coupling/import/row_text.h"
 #include "coupling/import/synonyms.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
-
-// "a,c_id[1..3]" -> a, c_id[1], c_id[2], c_id[3]
-std::vector<std::string> expanded(const std::string& list) {
-  std::vector<std::string_view> parts;
-  split(list, ',', parts);
-  std::vector<std::string> out;
-  for (const std::string_view part : parts) {
-    const std::size_t open = part.rfind('['), dots = part.rfind("..");
-    std::optional<double> first, last;
-    if (open != std::string_view::npos && dots != std::string_view::npos && part.back() == ']') {
-      first = dem::parse_number(part.substr(open + 1, dots - open - 1));
-      last = dem::parse_number(part.substr(dots + 2, part.size() - dots - 3));
-    }
-    // False for nan too.
-    const bool good = first && last && 0 <= *first && *first <= *last && *last <= 1000;
-    if (!good) {
-      out.emplace_back(part);
-      continue;
-    }
-    for (int k = static_cast<int>(*first); k <= static_cast<int>(*last); ++k)
-      out.push_back(fmt::format("{}[{}]", part.substr(0, open), k));
-  }
-  return out;
-}
 
 // "-fx", "|fx|", "x*", "dx/dt": something else than the name without them.
 bool has_signs(const std::string& name) {
@@ -48,6 +25,14 @@ bool has_signs(const std::string& name) {
   return name.starts_with('-') || std::any_of(name.begin(), name.end(), sign);
 }
 
+// "v[0]", "v:0"
+bool is_component(const std::string& name) {
+  const bool bracket = name.size() > 3 && name.back() == ']' && name[name.size() - 3] == '[';
+  const bool colon = name.size() > 2 && name[name.size() - 2] == ':';
+  return (bracket || colon) &&
+         std::isdigit(static_cast<unsigned char>(name[name.size() - (bracket ? 2 : 1)])) != 0;
+}
+
 const OurColumn* our_column(const std::string& name) {
   for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
     for (const OurColumn& column : our_columns(kind))
@@ -55,90 +40,44 @@ const OurColumn* our_column(const std::string& name) {
   return nullptr;
 }
 
-std::vector<std::string> all_our_names() {
-  std::vector<std::string> names;
-  for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
-    for (const OurColumn& column : our_columns(kind)) names.push_back(column.name);
-  return names;
+}  // namespace
+
+namespace {
+
+// "x_mm", "radius/mm", "fx, kN": a unit behind a name that is ours; else the name as it is.
+Heading heading_without_brackets(const std::string& text, int index) {
+  const std::string_view whole = trimmed(text);
+  const std::size_t sign = whole.find_last_of("_/,");
+  if (sign != std::string_view::npos && sign > 0) {
+    const std::string_view unit = trimmed(whole.substr(sign + 1));
+    const std::string name(trimmed(whole.substr(0, sign)));
+    for (const std::string_view known : {"m", "cm", "mm", "um", "\u00b5m", "\u03bcm", "nm", "kg",
+                                         "g", "mg", "N", "kN", "mN", "uN", "MN"})
+      if (unit == known && is_known_name(name) && name != "i" && name != "j")
+        return {name, std::string(unit), index};
+  }
+  return {std::string(whole), "", index};
+}
+
+// Units of other systems, and ways to write units that are not ours.
+bool is_unit_of_others(std::string unit) {
+  for (char& ch : unit) ch = static_cast<char>(std::tolower(static_cast<unsigned char>(ch)));
+  for (const char* known :
+       {"in",     "inch",       "inches",      "ft",      "feet",  "foot",   "mil",
+        "yd",     "lb",         "lbs",         "lbf",     "lbm",   "oz",     "t",
+        "ton",    "tonne",      "kgf",         "gf",      "tf",    "kp",     "dyn",
+        "psi",    "slug",       "micron",      "microns", "meter", "meters", "metre",
+        "metres", "millimeter", "millimeters", "t/m3",    "t/m^3", "g/cc",   "g/ml",
+        "kg/l",   "lb/ft3",     "lb/in3",      "pcf",     "in/s",  "ft/s"})
+    if (unit == known) return true;
+  return false;
 }
 
 }  // namespace
 
-ColumnNames::ColumnNames(std::vector<std::pair<std::string, std::string>> format)
-    : format_(std::move(format)) {}
-
-void ColumnNames::choose(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos)
-    throw std::invalid_argument(
-        fmt::format("--column: found \"{}\", expected OURS=THEIRS, such as radius=c_r", text));
-  const std::vector<std::string> ours = expanded(text.substr(0, equals)),
-                                 theirs = expanded(text.substr(equals + 1)),
-                                 known = all_our_names();
-  if (ours.size() != theirs.size())
-    throw std::invalid_argument(fmt::format("--column {}: {} names on the left, {} on the right",
-                                            text, ours.size(), theirs.size()));
-  for (std::size_t k = 0; k < ours.size(); ++k) {
-    if (std::find(known.begin(), known.end(), ours[k]) == known.end())
-      throw std::invalid_argument(fmt::format("--column {}: unknown name \"{}\"; did you mean {}?",
-                                              text, ours[k], continuum::nearest(ours[k], known)));
-    chosen_.emplace_back(ours[k], theirs[k]);
-  }
-}
-
-bool ColumnNames::claims(const std::string& theirs) const {
-  const auto names = [&](const auto& pair) { return pair.second == theirs; };
-  return std::any_of(chosen_.begin(), chosen_.end(), names) ||
-         std::any_of(format_.begin(), format_.end(), names);
-}
-
-void ColumnNames::mark_taken(const std::string& file, const std::string& ours,
-                             const std::string& theirs) {
-  auto& list = taken_[file];
-  const std::string text = fmt::format("{} = {}", ours, theirs);
-  if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
-}
-
-std::vector<std::string> ColumnNames::take_taken() {
-  std::vector<std::string> out;
-  for (const auto& [file, list] : taken_)
-    out.push_back(
-        fmt::format("{}: columns taken by their names: {} (--column OURS=THEIRS takes "
-                    "others)",
-                    file, fmt::join(list, ", ")));
-  taken_.clear();
-  return out;
-}
-
-std::vector<ColumnNames::Candidate> ColumnNames::candidates(const std::string& ours) const {
-  std::vector<Candidate> out;
-  for (const auto& [name, theirs] : chosen_)
-    if (name == ours) out.push_back({theirs, true});
-  for (const auto& [name, theirs] : format_)
-    if (name == ours) out.push_back({theirs, false});
-  return out;
-}
-
-bool ColumnNames::chose(const std::string& ours) const {
-  return std::any_of(chosen_.begin(), chosen_.end(),
-                     [&](const auto& pair) { return pair.first == ours; });
-}
-
-void ColumnNames::mark_used(const std::string& ours, const std::string& theirs) {
-  used_.insert(ours + "=" + theirs);
-}
-
-void ColumnNames::require_all_used() const {
-  for (const auto& [ours, theirs] : chosen_)
-    if (used_.find(ours + "=" + theirs) == used_.end())
-      throw std::invalid_argument(
-          fmt::format("--column {}={}: no table that needs {} has a column \"{}\"", ours, theirs,
-                      ours, theirs));
-}
-
 Heading heading_of(const std::string& text, int index) {
   const std::size_t open = text.find_last_of("([{");
-  if (open == std::string::npos) return {std::string(trimmed(text)), "", index};
+  if (open == std::string::npos) return heading_without_brackets(text, index);
   const std::size_t close = text.find_first_of(")]}", open);
   // "fx (N) x1000" says more than a unit.
   if (close != std::string::npos && !trimmed(std::string_view(text).substr(close + 1)).empty())
@@ -163,7 +102,7 @@ TableColumns::TableColumns(const ForeignTable& table, ColumnNames& names)
 std::optional<Unit> TableColumns::unit_of(const std::string& ours, const Heading& heading) const {
   const OurColumn* known = our_column(ours);
   if (known == nullptr || known->unit.empty()) return std::nullopt;
-  if (known->unit == "m") note_length(heading);
+  if (known->unit != "1") note_unit(known->unit, heading);
   if (heading.unit.empty()) {
     // A volume is one of the plane or of space: its table's unit is told by its reader.
     const int ten = known->unit == "m3" ? 0 : table_.units.ten_of(known->unit);
@@ -173,6 +112,8 @@ std::optional<Unit> TableColumns::unit_of(const std::string& ours, const Heading
   const std::optional<Unit> unit = parse_unit(heading.unit == "-" ? "1" : heading.unit);
   for (const std::string& allowed : {known->unit, known->plane_unit})
     if (unit && unit->kind == parse_unit(allowed)->kind) return unit;
+  // "id [#]": what is no unit belongs to the name of a number without one.
+  if (!unit && known->unit == "1") return std::nullopt;
   throw std::invalid_argument(fmt::format(
       "{}:{}: column {}: found the unit \"{}\", allowed: {}{}", table_.file, table_.header_line,
       heading.name == ours ? ours : fmt::format("{} ({})", heading.name, ours), heading.unit,
@@ -182,34 +123,58 @@ std::optional<Unit> TableColumns::unit_of(const std::string& ours, const Heading
                         known->plane_unit == known->unit ? "" : " (2D: " + known->plane_unit + ")",
                         known_symbols()),
       unit ? ""
-           : fmt::format("; where it is no unit: --column '{}={}'", ours,
-                         (*table_.columns)[static_cast<std::size_t>(heading.index)])));
+      : is_unit_of_others(heading.unit)
+          ? "; convert the column"
+          : fmt::format("; where it is no unit: --column '{}={}'", ours,
+                        (*table_.columns)[static_cast<std::size_t>(heading.index)])));
 }
 
-void TableColumns::note_length(const Heading& heading) const {
+void TableColumns::note_unit(const std::string& unit, const Heading& heading) const {
+  Told& told = told_[unit];
   if (heading.unit.empty()) {
-    // The places of a VTK file have no name that a unit could stand in.
-    if (table_.arrays == nullptr) bare_lengths_.push_back(heading.name);
+    told.bare.push_back(heading.name);
     return;
   }
-  const std::optional<Unit> unit = parse_unit(heading.unit);
-  if (unit && unit->ten != table_.units.ten_of("m") && told_length_.empty()) {
-    told_length_ = heading.name;
-    told_unit_ = heading.unit;
+  const std::optional<Unit> parsed = parse_unit(heading.unit);
+  if (parsed && parsed->ten != table_.units.ten_of(unit) && told.name.empty()) {
+    told.name = heading.name;
+    told.unit = heading.unit;
   }
 }
 
-void TableColumns::require_length_units() const {
-  if (told_length_.empty() || bare_lengths_.empty()) return;
-  std::vector<std::string> bare = bare_lengths_;
-  std::sort(bare.begin(), bare.end());
-  bare.erase(std::unique(bare.begin(), bare.end()), bare.end());
-  throw std::invalid_argument(
-      fmt::format("{0}:{1}: found the unit {2} of {3} and none of {4}, expected one of each "
-                  "length, such as \"{5} "
-                  "({2})\" or \"{5} (m)\"",
-                  table_.file, table_.header_line, told_unit_, told_length_, fmt::join(bare, ", "),
-                  bare.front()));
+std::string TableColumns::require_units() const {
+  for (const auto& [unit, told] : told_) {
+    if (told.name.empty() || told.bare.empty()) continue;
+    std::vector<std::string> bare = told.bare;
+    std::sort(bare.begin(), bare.end());
+    bare.erase(std::unique(bare.begin(), bare.end()), bare.end());
+    // Points of VTK cannot tell a unit.
+    if (table_.arrays != nullptr)
+      return fmt::format(
+          "{}: {} is in {}, and {} without a unit: they are read in {} (--units changes it)",
+          table_.file, told.name, told.unit, fmt::join(bare, ", "),
+          table_.units.name.empty() || table_.units.is_si() ? unit : table_.units.name);
+    throw std::invalid_argument(fmt::format(
+        "{0}:{1}: found the unit {2} of {3} and none of {4}, expected one of each of them, such as "
+        "\"{5} ({2})\" or \"{5} ({6})\"",
+        table_.file, table_.header_line, told.unit, told.name, fmt::join(bare, ", "), bare.front(),
+        unit));
+  }
+  return "";
+}
+
+std::vector<std::string> TableColumns::untaken() const {
+  std::vector<std::string> out;
+  for (const Heading& heading : headings_)
+    if (!heading.name.empty() && taken_.find(heading.index) == taken_.end())
+      out.push_back(heading.name);
+  return out;
+}
+
+bool TableColumns::tells_units() const {
+  return std::any_of(headings_.begin(), headings_.end(), [&](const Heading& heading) {
+    return !heading.unit.empty() && taken_.find(heading.index) != taken_.end();
+  });
 }
 
 std::vector<std::string> TableColumns::misspelled() const {
@@ -218,11 +183,12 @@ std::vector<std::string> TableColumns::misspelled() const {
   for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
     for (const OurColumn& column : our_columns(kind)) ours.push_back(column.name);
   for (const Heading& heading : headings_) {
-    if (heading.name.size() < 4 || is_known_name(heading.name) || names_.claims(heading.name))
+    if (heading.name.size() < 4 || is_known_name(heading.name) || names_.claims(heading.name) ||
+        taken_.find(heading.index) != taken_.end())
       continue;
     if (const std::string meant = continuum::misspelt(heading.name, ours); !meant.empty())
-      out.push_back(fmt::format("{}:{}: the column \"{}\" is not used; did you mean {}?",
-                                table_.file, table_.header_line, heading.name, meant));
+      out.push_back(fmt::format("{}:{}: the column \"{}\" is not used; nearest: {}", table_.file,
+                                table_.header_line, heading.name, meant));
   }
   return out;
 }
@@ -255,11 +221,18 @@ std::vector<Heading>::const_iterator TableColumns::plainly(const std::string& ou
   const Synonyms& known = synonyms_of(ours);
   std::vector<std::string> wanted = known.sure;
   wanted.push_back(plain_column_name(ours));
+  const auto is_in = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  std::vector<std::string> all;
+  for (const Heading& heading : headings_) all.push_back(plain_column_name(heading.name));
   auto found = none;
   for (auto at = headings_.begin(); at != none; ++at) {
     if (has_signs(at->name)) continue;
-    const std::string plain = plain_column_name(at->name);
-    if (std::find(wanted.begin(), wanted.end(), plain) == wanted.end()) continue;
+    const std::string plain = counted_from_zero(plain_column_name(at->name), all);
+    // The components of a vector: "v[0]" is a velocity's, "v0" may be anything.
+    if (!is_in(wanted, plain) && !(is_component(at->name) && is_in(known.components, plain)))
+      continue;
     // Ix, Iy, Iz are moments of inertia.
     const bool flag = ours == "ix" || ours == "iy" || ours == "iz";
     if (flag && at->name.front() == 'I') continue;
@@ -282,7 +255,15 @@ std::vector<std::string> TableColumns::names() const {
   return out;
 }
 
+bool TableColumns::has(const std::string& ours) const { return bool(look_up(ours)); }
+
 ForeignColumn TableColumns::find(const std::string& ours) const {
+  ForeignColumn column = look_up(ours);
+  if (column.index >= 0) taken_.insert(column.index);
+  return column;
+}
+
+ForeignColumn TableColumns::look_up(const std::string& ours) const {
   for (const auto& candidate : names_.candidates(ours)) {
     const auto& columns = *table_.columns;
     const auto is_theirs = [&](const Heading& heading) {
@@ -305,7 +286,7 @@ ForeignColumn TableColumns::find(const std::string& ours) const {
     Heading heading = *at;
     const bool full =
         candidate.chosen && columns[static_cast<std::size_t>(at->index)] == candidate.theirs;
-    if (full && !parse_unit(heading.unit)) heading.unit.clear();
+    if (full && !parse_unit(heading.unit) && !is_unit_of_others(heading.unit)) heading.unit.clear();
     return {ours, at->index, std::nullopt, unit_of(ours, heading)};
   }
   const auto at = plainly(ours);
@@ -315,33 +296,70 @@ ForeignColumn TableColumns::find(const std::string& ours) const {
   return {ours, at->index, std::nullopt, unit_of(ours, *at)};
 }
 
+std::string TableColumns::suggestion(const std::string& ours) const {
+  // What is another column of ours, or taken already, is not meant.
+  std::vector<std::string> left;
+  for (const Heading& heading : headings_)
+    if (!heading.name.empty() && taken_.find(heading.index) == taken_.end())
+      left.push_back((*table_.columns)[static_cast<std::size_t>(heading.index)]);
+  std::string nearest = same_meaning(ours, left);
+  // What would do instead of ours, under its own name.
+  for (const auto& [other, instead] :
+       {std::pair<std::string, std::string>{"radius", "diameter"}, {"mass", "density"}}) {
+    if (ours != other || !nearest.empty()) continue;
+    nearest = same_meaning(instead, left);
+    if (!nearest.empty()) nearest += fmt::format(" (--column {}={})", instead, nearest);
+  }
+  if (!nearest.empty()) return "nearest: " + nearest;
+  std::erase_if(
+      left, [&](const std::string& name) { return is_known_name(name) || names_.claims(name); });
+  nearest = continuum::misspelt(ours, left);
+  if (!nearest.empty()) return "nearest: " + nearest;
+  return left.empty() ? "" : fmt::format("not used so far: {}", fmt::join(left, " "));
+}
+
 void TableColumns::missing(const std::string& what, const std::string& option,
                            const std::string& argument) const {
   const auto& columns = *table_.columns;
-  std::string nearest = same_meaning(what, columns);
-  // What would do instead of ours, under its own name.
-  for (const auto& [ours, instead] :
-       {std::pair<std::string, std::string>{"radius", "diameter"}, {"mass", "density"}}) {
-    if (what != ours || !nearest.empty()) continue;
-    nearest = same_meaning(instead, columns);
-    if (!nearest.empty()) nearest += fmt::format(" (--column {}={})", instead, nearest);
-  }
   const std::string found = columns.empty() ? "none" : fmt::format("{}", fmt::join(columns, " "));
   // Names in memory are ours: none is another's word for the one that is missing.
   if (table_.arrays != nullptr && !table_.any_names)
     throw std::invalid_argument(fmt::format("{}: no \"{}\"; found: {}{}", table_.file, what, found,
                                             argument.empty() ? "" : "; " + argument));
-  if (nearest.empty()) nearest = continuum::nearest(what, columns);
+  const std::string near = suggestion(what);
+  throw std::invalid_argument(
+      fmt::format("{}:{}: no column \"{}\"; found: {}{}; other names by --column {}=THEIRS{}",
+                  table_.file, table_.header_line, what, found, near.empty() ? "" : "; " + near,
+                  what, option.empty() ? "" : "; " + option));
+}
+
+void TableColumns::require_all(const std::vector<std::vector<std::string>>& wanted) const {
+  std::vector<std::string> lacking, hints;
+  for (const std::vector<std::string>& names : wanted) {
+    if (std::any_of(names.begin(), names.end(), [&](const auto& name) { return has(name); }))
+      continue;
+    lacking.push_back(names.front());
+    if (const std::string near = suggestion(names.front()); near.starts_with("nearest: "))
+      hints.push_back(fmt::format("{} ({})", names.front(), near.substr(9)));
+  }
+  if (lacking.size() < 2 || (table_.arrays != nullptr && !table_.any_names)) return;
   throw std::invalid_argument(fmt::format(
-      "{}:{}: no column \"{}\"; found: {}{} Other names by --column {}=THEIRS{}", table_.file,
-      table_.header_line, what, found, nearest.empty() ? "." : "; did you mean " + nearest + "?",
-      what, option.empty() ? "" : "; " + option));
+      "{}:{}: no columns \"{}\"; found: {}{}; other names by --column OURS=THEIRS", table_.file,
+      table_.header_line, fmt::join(lacking, "\", \""), fmt::join(*table_.columns, " "),
+      hints.empty() ? "" : fmt::format("; nearest: {}", fmt::join(hints, ", "))));
 }
 
 ForeignColumn TableColumns::need(const std::string& ours) const {
   ForeignColumn column = find(ours);
   if (!column) missing(ours);
   return column;
+}
+
+ForeignColumn TableColumns::peek_theirs(const std::string& theirs) const {
+  for (const Heading& heading : headings_)
+    if (heading.name == theirs)
+      return {theirs, heading.index, std::nullopt, parse_unit(heading.unit)};
+  return {};
 }
 
 ForeignColumn TableColumns::need_theirs(const std::string& theirs, const std::string& like) const {
@@ -351,8 +369,9 @@ ForeignColumn TableColumns::need_theirs(const std::string& theirs, const std::st
   });
   if (at == headings_.end())
     throw std::invalid_argument(fmt::format(
-        "{}:{}: no column \"{}\"; found: {}; did you mean {}?", table_.file, table_.header_line,
-        theirs, fmt::join(columns, " "), continuum::nearest(theirs, columns)));
+        "{}:{}: no column \"{}\"; found: {}; nearest: {}", table_.file, table_.header_line, theirs,
+        fmt::join(columns, " "), continuum::nearest(theirs, columns)));
+  taken_.insert(at->index);
   return {theirs, at->index, std::nullopt, unit_of(like, *at)};
 }
 

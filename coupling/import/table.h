@@ -57,6 +57,9 @@ struct ForeignTable {
   std::string told_units;       ///< "FILE:LINE" where the file itself says what it is in
   UnitSystem units;             ///< of columns that tell none
   std::string broken;           ///< not empty: why the table cannot be read (truncated)
+  /// "FILE:LINE: found "lengths in mm"": a unit in a line that is no row of units.
+  std::string unit_remark;
+  std::vector<std::string> doubts;  ///< what makes the reading of its numbers doubtful
   /// Not null: the table is in memory and `file` only names it. One for each of `columns`, all as
   /// long as `rows`.
   std::shared_ptr<const std::vector<ArrayColumn>> arrays;
@@ -74,11 +77,11 @@ class ColumnNames {
  public:
   /// `format`: ours to theirs, any number for one of ours.
   explicit ColumnNames(std::vector<std::pair<std::string, std::string>> format);
-  /// One --column: "ours=theirs", "ours=number", "ours=number unit", or lists "i,j=c_id[1..2]".
-  /// Throws std::invalid_argument: no "=", unknown name (with the nearest), lists of different
-  /// length.
-  void choose(const std::string& text);
-  /// Throws std::invalid_argument when a chosen name was met in no table at all.
+  /// All --column: "ours=theirs", "ours=number", "ours=number unit", or lists "i,j=c_id[1..2]";
+  /// names with commas in quotation marks. Throws std::invalid_argument: no "=", lists of different
+  /// length, and all unknown names with their nearest.
+  void choose(const std::vector<std::string>& texts);
+  /// Throws std::invalid_argument naming all chosen names that were met in no table at all.
   void require_all_used() const;
 
   struct Candidate {
@@ -127,23 +130,40 @@ class TableColumns {
   /// that is there twice, for a constant that is not finite, or without a unit where lengths are
   /// not in m, and for a unit that is unknown or of another kind than ours.
   ForeignColumn find(const std::string& ours) const;
+  /// Whether the table has it; it does not count as taken by this.
+  bool has(const std::string& ours) const;
   /// Throws std::invalid_argument "FILE:LINE: no column ...; found: ...; nearest ...".
   ForeignColumn need(const std::string& ours) const;
+  /// Throws std::invalid_argument naming all that are missing where more than one is. Each: names
+  /// of ours one of which is enough; the first is the one in the message.
+  void require_all(const std::vector<std::vector<std::string>>& wanted) const;
   /// By the file's own name, with numbers such as our column `like` has; throws as need().
   ForeignColumn need_theirs(const std::string& theirs, const std::string& like = "") const;
+  /// A column of the file by its name, as it is, with the unit behind it; it does not count as
+  /// taken.
+  ForeignColumn peek_theirs(const std::string& theirs) const;
   /// What else would do: as an option of the program; as an argument, for a table in memory.
   [[noreturn]] void missing(const std::string& what, const std::string& option = "",
                             const std::string& argument = "") const;
   /// Names of the table's columns, without units.
   std::vector<std::string> names() const;
-  /// Throws std::invalid_argument where of the lengths that were found some have a unit other than
-  /// the table's and others none.
-  void require_length_units() const;
-  /// A line for each column that nobody uses and whose name is nearly one of ours.
+  /// Throws std::invalid_argument where of the lengths (forces, velocities ...) that were found
+  /// some have a unit other than the table's and others none. Returns a doubt where a table cannot
+  /// give the units of its places (VTK); else "".
+  std::string require_units() const;
+  /// Names of the columns that nobody took, without units.
+  std::vector<std::string> untaken() const;
+  /// A line for each column that nobody took and whose name is nearly one of ours.
   std::vector<std::string> misspelled() const;
+  /// Whether any column that was taken has a unit of its own.
+  bool tells_units() const;
 
  private:
-  void note_length(const Heading& heading) const;
+  ForeignColumn look_up(const std::string& ours) const;
+  void note_unit(const std::string& unit, const Heading& heading) const;
+  /// What the user may have meant by one of ours, "" or "nearest: NAME": by another program's name,
+  /// a slip of the pen, or the columns that are left.
+  std::string suggestion(const std::string& ours) const;
   std::optional<Unit> unit_of(const std::string& ours, const Heading& heading) const;
   std::optional<double> constant_of(const std::string& ours, const std::string& text) const;
   /// The heading that plainly is ours, or the only one of another program's name for it; else end.
@@ -152,8 +172,12 @@ class TableColumns {
   const ForeignTable& table_;
   ColumnNames& names_;
   std::vector<Heading> headings_;
-  mutable std::vector<std::string> bare_lengths_;  // found, without a unit
-  mutable std::string told_length_, told_unit_;    // the first with another than the table's
+  struct Told {
+    std::vector<std::string> bare;  // found, without a unit
+    std::string name, unit;         // the first with another than the table's
+  };
+  mutable std::map<std::string, Told> told_;  // by our unit
+  mutable std::set<int> taken_;               // places of columns
 };
 
 /// An id as a file tells it.
@@ -182,6 +206,8 @@ class ForeignRow {
   /// The same for whole numbers ("7", "7.0", "7.000e+00"), to the last of 64 bits. Throws for what
   /// is written as a floating-point number and beyond 2^53, where such numbers leave some out.
   ToldId told_id(const ForeignColumn& column) const;
+  /// Digits that a number has; 17 where it cannot be told.
+  int digits(const ForeignColumn& column) const;
   /// The same for flags: 1 or 0; false where it is empty.
   bool flag(const ForeignColumn& column) const;
   /// The same for coefficients of friction, 0 to kMostFriction.

@@ -5,11 +5,29 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "coupling/import/number_signs.h"
 #include "coupling/import/row_text.h"
 #include "coupling/import/table.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
+namespace {
+
+// Whether a line that begins with # parts into numbers as a row of the table does: a comment is
+// other words, or has a blank behind its sign.
+bool is_row_behind_sign(const std::vector<std::string_view>& fields, std::size_t columns) {
+  if (columns < 3 || fields.size() != columns || fields.front().size() < 2 ||
+      fields.front()[1] == ' ')
+    return false;
+  std::size_t numbers = 0, words = 0;
+  for (std::size_t k = 1; k < fields.size(); ++k) {
+    if (is_no_value(fields[k])) continue;
+    (dem::parse_number(fields[k]) || is_decimal_comma(fields[k]) ? numbers : words) += 1;
+  }
+  return numbers > 1 && numbers >= words;
+}
+
+}  // namespace
 
 const ArrayColumn* ForeignRow::array_of(const ForeignColumn& column) const {
   return arrays == nullptr || column.index < 0 ? nullptr
@@ -35,8 +53,7 @@ bool ForeignRow::empty(const ForeignColumn& column) const {
   if (array != nullptr && !array->numbers.empty()) return std::isnan(array->numbers[place]);
   if (!column || column.constant) return !column;
   const std::string_view told = text(column);
-  // Words of R and pandas for an empty cell.
-  return told.empty() || told == "NA" || told == "<NA>" || told == "None";
+  return is_no_value(told);  // nan may be what a program computed
 }
 
 std::string ForeignRow::name_of(const ForeignColumn& column) const {
@@ -79,10 +96,13 @@ double ForeignRow::number(const ForeignColumn& column) const {
   if (!value || !std::isfinite(*value)) {
     const std::string_view told = text(column);
     const bool comma = array == nullptr && std::count(told.begin(), told.end(), ',') == 1;
-    refuse(fmt::format("column {}: found \"{}\", expected a finite number{}", name_of(column), told,
-                       comma ? ": is the comma one of decimals or of thousands? Decimal commas are "
-                               "read in tables with semicolons"
-                             : ""));
+    const bool none = array == nullptr && (told == "nan" || told == "NaN");
+    refuse(fmt::format(
+        "column {}: found \"{}\", expected a finite number{}", name_of(column), told,
+        comma  ? ": is the comma one of decimals or of thousands? Decimal commas are read where no "
+                 "number of the table has a point"
+        : none ? "; a column that may be missing may be empty"
+               : ""));
   }
   return *value;
 }
@@ -121,6 +141,19 @@ ToldId ForeignRow::told_id(const ForeignColumn& column) const {
   return {static_cast<std::int64_t>(*value), digits < whole_digits ? digits : 0};
 }
 
+int ForeignRow::digits(const ForeignColumn& column) const {
+  constexpr int kDouble = 17, kSingle = 7;
+  if (column.constant) return kDouble;
+  if (const ArrayColumn* array = array_of(column)) return array->single ? kSingle : kDouble;
+  int out = 0;
+  for (const char ch : text(column)) {
+    if (ch == 'e' || ch == 'E') break;
+    // Zeros before the first other digit tell nothing.
+    if (ch >= '0' && ch <= '9' && (ch != '0' || out > 0)) ++out;
+  }
+  return out;
+}
+
 bool ForeignRow::flag(const ForeignColumn& column) const {
   if (empty(column)) return false;
   const std::string_view told = column.constant ? std::string_view() : text(column);
@@ -156,7 +189,7 @@ void TableReader::read_arrays(const ForeignTable& table,
 }
 
 Lines& TableReader::lines_of(const std::string& file) {
-  constexpr std::size_t kMostOpen = 16;
+  constexpr std::size_t kMostOpen = 40;
   const auto at = std::find_if(files_.begin(), files_.end(),
                                [&](const Lines& lines) { return lines.file() == file; });
   if (at != files_.end()) {
@@ -184,7 +217,17 @@ void TableReader::read(const ForeignTable& table,
   for (long long n = 0; (table.rows < 0 || n < table.rows) && lines.next(line);) {
     row.line = lines.line();
     const std::string_view text = trimmed(line);
-    if (text.empty() || (table.rows < 0 && text.front() == '#')) continue;
+    if (text.empty()) continue;
+    if (table.rows < 0 && text.front() == '#') {
+      RowParts behind;
+      const auto& values = behind.of(text, table.separator);
+      if (!is_row_behind_sign(values, columns)) continue;
+      if (!is_no_value(values.front()))
+        row.refuse(
+            fmt::format("found \"{}\", expected a row, or a comment with a blank behind its "
+                        "sign: is it a row?",
+                        text.substr(0, 60)));
+    }
     ++n;
     const std::vector<std::string_view>& fields = parts.of(line, table.separator, lines);
     row.fields = &fields;

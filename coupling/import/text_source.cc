@@ -60,6 +60,9 @@ std::string foreign_kind(std::string_view head) {
   };
   for (const Kind& kind : kinds)
     if (head.starts_with(kind.head)) return std::string(kind.what);
+  constexpr std::size_t kTar = 257;  // POSIX.1, ustar: place of its sign
+  if (head.size() > kTar && head.substr(kTar).starts_with("ustar"sv))
+    return "an archive (tar) of files; unpack it (tar -xf) and give the files";
   return "";
 }
 

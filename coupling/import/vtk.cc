@@ -8,6 +8,7 @@
 
 #include "coupling/import/format.h"
 #include "coupling/import/text_source.h"
+#include "coupling/import/told_units.h"
 #include "coupling/import/vtk_arrays.h"
 
 namespace grainfield::coupling {
@@ -24,7 +25,15 @@ std::vector<ForeignTable> scan(const std::string& file, ColumnNames& names) {
         "{}:1: found \"{}\", expected \"# vtk DataFile\" or \"<VTKFile\"", file, found));
   }
   const VtkData data = legacy ? read_legacy_vtk(file, bytes) : read_xml_vtk(file, bytes);
-  return vtk_tables(file, data, names);
+  std::vector<ForeignTable> tables = vtk_tables(file, data, names);
+  // The second line of a legacy file is a title.
+  const std::size_t title = bytes.find('\n') + 1;
+  if (legacy && title > 0)
+    for (ForeignTable& table : tables)
+      table.unit_remark = unit_remark(
+          file, 2,
+          bytes.substr(title, std::min<std::size_t>(bytes.find('\n', title) - title, 256)));
+  return tables;
 }
 
 }  // namespace

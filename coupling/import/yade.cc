@@ -9,6 +9,7 @@
 
 #include "coupling/import/format.h"
 #include "coupling/import/synonyms.h"
+#include "coupling/import/told_units.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -20,12 +21,17 @@ std::vector<std::string> names_of(std::string_view comment) {
     const std::string_view format = words[1];
     split(format, '_', words);
   }
+  if (words.size() == 1 && words[0].find(',') != std::string_view::npos) {
+    const std::string_view names = words[0];
+    split(names, ',', words);
+  }
   return {words.begin(), words.end()};
 }
 
 struct Comment {
   std::vector<std::string> names;
   long long line = 0;
+  std::string text;
 };
 
 // "#format x_y_z_r_attrs" and behind it "#id mass": attributes stand in place of their word.
@@ -52,6 +58,12 @@ const Comment* best_of(const std::vector<Comment>& comments, std::size_t count) 
   return best;
 }
 
+// The forces of YADE act on the second body, which --from csv does not know.
+constexpr const char* kCommas =
+    "; a table with commas is read by --from csv (with --flip-forces where forces act on the "
+    "second "
+    "body)";
+
 std::vector<ForeignTable> scan(const std::string& file, ColumnNames&) {
   Lines lines(file);
   std::vector<Comment> comments;
@@ -61,7 +73,18 @@ std::vector<ForeignTable> scan(const std::string& file, ColumnNames&) {
   table.any_names = true;
   table.first = lines.place();
   const auto named = [&](const Comment& comment) {
-    table.columns = std::make_shared<const std::vector<std::string>>(comment.names);
+    std::vector<std::string> names = comment.names;
+    for (const Comment& other : comments) {
+      if (other.line == comment.line) continue;
+      const auto units = units_row(other.text, ' ', names.size());
+      if (units) {
+        names = names_with_units(std::move(names), *units);
+        table.unit_remark.clear();
+        break;
+      }
+      if (table.unit_remark.empty()) table.unit_remark = unit_remark(file, other.line, other.text);
+    }
+    table.columns = std::make_shared<const std::vector<std::string>>(std::move(names));
     table.header_line = comment.line;
     return std::vector<ForeignTable>{table};
   };
@@ -69,19 +92,23 @@ std::vector<ForeignTable> scan(const std::string& file, ColumnNames&) {
     line = trimmed(line);
     if (line.empty()) continue;
     if (line.front() == '#') {
-      comments.push_back({names_of(line.substr(1)), lines.line()});
+      comments.push_back({names_of(line.substr(1)), lines.line(), std::string(line.substr(1))});
       continue;
     }
     put_attributes(comments);
     split(line, ' ', fields);
+    if (fields.size() == 1 && line.find(',') != std::string_view::npos)
+      throw std::invalid_argument(
+          fmt::format("{}: found \"{}\", expected values with blanks between{}", lines.where(),
+                      line.substr(0, 60), kCommas));
     if (const Comment* best = best_of(comments, fields.size())) return named(*best);
     throw std::invalid_argument(fmt::format(
         "{}: no comment line above names the {} columns; expected \"#format id_x_y_z_r\" or "
         "\"# id x y z r mass\"{}",
         lines.where(), fields.size(),
         line.find(',') == std::string_view::npos
-            ? " (a line of names without # is read by --from csv)"
-            : "; a table with commas is read by --from csv"));
+            ? "; where the first line has the names without #: put one before it"
+            : kCommas));
   }
   // No rows: the last comment names the columns of an empty table.
   if (comments.empty()) throw std::invalid_argument(file + ": is empty");
@@ -95,6 +122,7 @@ ImportFormat yade_format() {
   format.name = "yade";
   format.summary = "text of the bodies and of the interactions (docs/import.md has the script)";
   format.scan = scan;
+  format.densities_of_spheres = true;
   format.force_sign = -1;
   const char* same[] = {
       "id",     "x",    "y",       "z",        "vx",     "vy",    "vz",      "angle",  "spin",

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "coupling/judge/judgement.h"
+#include "coupling/statistics/value_text.h"
 
 namespace grainfield::coupling {
 
@@ -36,10 +37,5 @@ struct JudgementTable {
 JudgementTable table_of(const Judgement& judgement);
 /// How many realizations would distinguish each model from the best.
 JudgementTable power_table(const Judgement& judgement);
-
-/// "0.350 ± 0.021": to two digits of the error; without one four digits of the value.
-std::string with_error(double value, double error);
-/// The value alone to the digits that it has there. `error`: above 0.
-std::string to_digits_of(double value, double error);
 
 }  // namespace grainfield::coupling

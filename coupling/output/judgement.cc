@@ -56,11 +56,11 @@ std::string judgement_text(const Judgement& j) {
 std::string judgement_latex(const Judgement& j) {
   std::string out = escape_latex(fmt::format("{}\n", fmt::join(headlines(j), "\n\n")));
   if (const std::string line = agreement_line(j); !line.empty()) {
-    out += "\n" + escape_latex(line) + "\n";
+    out += fmt::format("\n{}\n", escape_latex(line));
   }
   const JudgementTable table = table_of(j);
-  if (!table.rows.empty()) out += "\n" + latex_table(table.header, table.rows);
-  for (const std::string& line : note_lines(j)) out += "\n" + escape_latex(line) + "\n";
+  if (!table.rows.empty()) out += fmt::format("\n{}", latex_table(table.header, table.rows));
+  for (const std::string& line : note_lines(j)) out += fmt::format("\n{}\n", escape_latex(line));
   if (j.doubts.empty()) return out;
   out += "\n\\begin{itemize}\n";
   for (const std::string& line : j.doubts) out += "  \\item " + escape_latex(line) + "\n";

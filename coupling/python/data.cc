@@ -256,7 +256,16 @@ Packing packing_of(const py::dict& grains, const py::dict& contacts, const py::d
     o.walls.push_back(coupling::parse_wall(text));
   for (const auto& text : options["periodic"].cast<std::vector<std::string>>())
     o.periodic.push_back(coupling::parse_periodic(text));
-  o.flip_forces = options["flip_forces"].cast<bool>();
+  if (const py::object flip = options["flip_forces"]; py::isinstance<py::str>(flip)) {
+    const auto which = flip.cast<std::string>();
+    o.flip_pairs = which == "pairs";
+    o.flip_walls = which == "walls";
+    if (!o.flip_pairs && !o.flip_walls)
+      throw std::invalid_argument(fmt::format(
+          "flip_forces: found \"{}\", allowed: False, True, \"pairs\", \"walls\"", which));
+  } else {
+    o.flip_forces = flip.cast<bool>();
+  }
   if (!options["load"].is_none()) {
     const auto [id, force] = options["load"].cast<std::pair<std::int64_t, std::vector<double>>>();
     if (force.size() != static_cast<std::size_t>(o.dim))

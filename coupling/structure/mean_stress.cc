@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "coupling/averaging/region.h"
-#include "coupling/judge/words.h"
 #include "coupling/statistics/spread.h"
+#include "coupling/statistics/value_text.h"
 
 namespace grainfield::coupling {
 

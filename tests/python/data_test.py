@@ -132,7 +132,7 @@ def test_mistakes_in_arrays_are_those_of_an_import(tmp_path):
     assert "grain 0 in contact with itself" in both(good | {"j": [0]})
     assert "in contact at a distance of 0.1 m" in both(good, x=[0.0, 0.1])
     wrong = error_of(lambda: gf.packing([0], [0], 1, mass=1, colour=[3]))
-    assert wrong.startswith('grains: unknown column "colour"; did you mean ')
+    assert wrong.startswith('grains: unknown column "colour"; nearest: ')
     assert error_of(lambda: gf.packing([0, 1], [0], 1, mass=1)) == (
         "grains: found 1 values of y and 2 of x, allowed: as many")
     assert error_of(lambda: gf.packing([0], [0], 1, mass=1, contact=good)) == (

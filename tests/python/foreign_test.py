@@ -39,7 +39,7 @@ def tables(folder, n=3):
 def test_options_are_arguments(tmp_path):
     files = tables(tmp_path)
     made = gf.import_packing("csv", *files, density="2.5 g/cm2", friction=0.25, flip_forces=True, gravity=(0, 0),
-                             periodic={"x": (-0.01, 0.05)}, load=(1, (0, -3)), walls=["floor:y=-0.01", "lid:y=0.01"],
+                             periodic={"x": (-0.01, 0.05)}, load=(1, (0, -3)), walls=["floor:y=-0.01 m", "lid:y=10 mm"],
                              fixed="id=0,2", dim=2)
     assert made.contacts.forces.tolist() == [[-2.5, 0], [-2.5, 0]] and (made.contacts.friction == 0.25).all()
     assert made.masses[0] == pytest.approx(25 * np.pi * 0.01**2) and made.fixed.tolist() == [True, False, True]

@@ -73,7 +73,7 @@ def import_packing(
     for text in [walls] if isinstance(walls, str) and walls else walls:
         option("wall", text)
     for text in _periods(periodic):
-        option("periodic", text)
+        option("periodic", text.replace(":", " m:") + " m")  # whatever the units of the files
     option("fixed", fixed)
     for step in steps.items() if isinstance(steps, Mapping) else _list(steps):
         option("step", "=".join(map(str, step)) if isinstance(step, tuple) else step)

@@ -132,7 +132,7 @@ def packing(
     periodic: Mapping[str, tuple[float, float]] | Sequence[tuple[str, Any]] | None = None,
     load: tuple[int, Sequence[float]] | None = None,
     time: float = 0,
-    flip_forces: bool = False,
+    flip_forces: bool | str = False,
     **columns: Any,
 ) -> Packing:
     """A packing of disks, convex polygons (2D) or, with z, spheres (3D) from arrays, in SI units.
@@ -149,7 +149,8 @@ def packing(
 
     Other keywords are further columns of the grains under the names of docs/import.md (angle, spin,
     material, ...). The checks are those of `grainfield import`: grains:12 in a message is row 12,
-    from 0. What `.check()` finds is given as Python warnings. Raises ValueError.
+    from 0. flip_forces: True turns all forces, "pairs" those between grains, "walls" those with
+    walls. What `.check()` finds is given as Python warnings. Raises ValueError.
     """
     dim = 2 if z is None else 3
     for name, value in (("x", x), ("y", y), ("z", z), ("radius", radius)):

@@ -16,7 +16,8 @@ next call goes on to the same bits. Several calls at once take different runs. A
 two files in docs/reproduction/states/LIST/, which are committed: NAME.h5.xz, its states compacted
 (states/compact.py), and NAME.json with seed, commit, settings, processor time, the SHA-256 of the
 states and the figures of summary.json. A run with output.snapshots=false leaves its tables instead of
-states, NAME.TABLE.csv. A run whose NAME.json is there is not missing. A run whose grains.files name
+states, NAME.TABLE.csv. A run whose NAME.json is there is not missing. With --pack a run that has not
+ended leaves NAME.unfinished.tar.xz there, committed: another machine goes on from it. A run whose grains.files name
 docs/reproduction/states/LIST/NAME.h5 waits until that run's states are there, and unpacks them.
 
 Ends with 0 when a run has ended or has come further, 1 when none is missing, 2 when it cannot start or a
@@ -35,6 +36,7 @@ import shlex
 import signal
 import subprocess
 import sys
+import tarfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -137,6 +139,24 @@ def unpack_packings(source, settings):
         part.replace(target)
 
 
+def unpack_unfinished(folder, packed):
+    """The checkpoint of a run that was begun elsewhere."""
+    if packed.exists() and not (folder / "results").exists():
+        with tarfile.open(packed) as archive:
+            archive.extractall(folder)
+
+
+def pack_unfinished(name, folder, packed):
+    """Commits the checkpoint of a run, and the processor time that it has taken."""
+    packed.parent.mkdir(parents=True, exist_ok=True)
+    with tarfile.open(packed, "w:xz") as archive:
+        for part in sorted(path.relative_to(folder) for path in folder.rglob("checkpoint")):
+            archive.add(folder / part, str(part))
+        archive.add(folder / "cpu_seconds", "cpu_seconds")
+    git("add", "--", str(packed))
+    git("commit", "--quiet", "-m", f"Runs: {name} so far", "--", str(packed))
+
+
 def compute(source, run, folder, deadline):
     """Goes on with a run until it has ended (True) or the time is over (False)."""
     name, seed, case, settings = run
@@ -206,10 +226,14 @@ def keep(run, tag, commit, folder, states):
               "sha256": hashlib.sha256(kept).hexdigest(), "summary": figures}
     contents[states / f"{name}.json"] = (json.dumps(record, indent=1) + "\n").encode()
     files = list(contents)
+    unfinished = states / f"{name}.unfinished.tar.xz"
     for file, content in contents.items():
         file.write_bytes(content)
     lock = Lock(ROOT / "build" / "runs" / "commit.lock", wait=True)
-    git("add", "--", *map(str, files))
+    if unfinished.exists():
+        git("rm", "--quiet", "--", str(unfinished))
+        files.append(unfinished)
+    git("add", "--", *map(str, contents))
     git("commit", "--quiet", "-m", f"Runs: {name}, seed {seed}, of {tag}", "-m",
         f"{case} by {commit[:12]}, {record['cpu_seconds'] / 60:.0f} processor minutes; "
         f"SHA-256 of the states {record['sha256']}.", "--", *map(str, files))
@@ -221,6 +245,7 @@ def main():
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("list", type=pathlib.Path, help="the runs")
     options.add_argument("--minutes", type=float, default=150, help="the most this call may take")
+    options.add_argument("--pack", action="store_true", help="commit the checkpoint of a run that has not ended")
     given = options.parse_args()
     deadline = time.monotonic() + 60 * given.minutes - GRACE
     listed = given.list.resolve()
@@ -240,10 +265,14 @@ def main():
             continue
         os.nice(10)
         source = build(tag, commit, work)
+        packed = states / f"{run[0]}.unfinished.tar.xz"
+        unpack_unfinished(folder, packed)
         if deadline - time.monotonic() < 60 * LEAST_MINUTES:
             print("built; no time left for a run", flush=True)
         elif compute(source, run, folder, deadline):
             keep(run, tag, commit, folder, states)
+        elif given.pack:
+            pack_unfinished(run[0], folder, packed)
         sys.exit(0)
     print("no run is missing")
     sys.exit(1)

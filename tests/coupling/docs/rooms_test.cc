@@ -18,7 +18,7 @@ const std::vector<Room>& rooms() {
       {"strain", {"averaging", "statistics"}},
       {"structure", {"averaging", "statistics"}},
       {"import", {"averaging", "system"}},
-      {"judge", {}},
+      {"judge", {"statistics"}},
       {"compare", {"averaging", "judge", "statistics"}},
       {"heap", {"averaging", "statistics"}},
       {"output", {"compare", "judge", "system"}},

@@ -48,7 +48,7 @@ TEST_F(ImportDoubts, PowersAreWrittenInManyWays) {
 TEST_F(ImportDoubts, UnitsOfSomeLengthsAreRefused) {
   EXPECT_THAT(grains("id,x (mm),y,radius\n1,0,0,5\n").refused,
               HasSubstr("g:1: found the unit mm of x and none of radius, y, expected one of each "
-                        "length, such as \"radius (mm)\" or \"radius (m)\""));
+                        "of them, such as \"radius (mm)\" or \"radius (m)\""));
   EXPECT_EQ(radius("id,x (m),y,radius\n1,0,0,5\n"), 5);
   EXPECT_EQ(radius("id,x (mm),y (mm),radius (m)\n1,0,0,5\n"), 5);
 }

@@ -374,6 +374,46 @@ TEST(ImportField, SaysHowMuchTheValuesCarry) {
   EXPECT_THAT(out.out, HasSubstr("- The pressures on the base carry 0.49"));
 }
 
+// The commonest table has no errors; a column of another name may be one of them.
+TEST(ImportField, ATableWithoutErrors) {
+  const Folder folder;
+  const auto import = [&](const std::string& head) {
+    std::string text = head + "\n";
+    for (int k = -4; k <= 4; ++k) text += fmt::format("{},pressure,900,9\n", 20 * k);
+    if (head.find("std") == std::string::npos)
+      text = std::regex_replace(text, std::regex(",9\n"), "\n");
+    return program("import-field " + folder.write("m.csv", text) +
+                   " --height 0.08 --slope 30 --rho-g 15000 -o " + (folder / "m.h5"));
+  };
+  EXPECT_EQ(import("x (mm),component,value (Pa)").code, 0);
+  EXPECT_THAT(import("x (mm),component,value (Pa),std (Pa)").err, HasSubstr("no column \"error\""));
+}
+
+// Heights count from the apex upwards, or from the surface of a layer.
+TEST(ImportField, HeightsThatAreNotInTheHeapOrLayer) {
+  const Folder folder;
+  const auto refusal = [&](const char* y, const std::string& options) {
+    std::string text = "x (mm),y (mm),component,value (Pa),error (Pa)\n";
+    for (int k = -4; k <= 4; ++k) text += fmt::format("{},{},pressure,900,9\n", 20 * k, y);
+    return program("import-field " + folder.write("m.csv", text) + options + " -o " +
+                   (folder / "m.h5"))
+        .err;
+  };
+  const std::string heap = " --height 0.08 --slope 30 --rho-g 15000",
+                    layer = " --geometry layer --dim 2 --height 0.1 --load 200";
+  EXPECT_THAT(
+      refusal("0", heap),
+      HasSubstr("8 of 9 places lie above the heap's surface, allowed: a quarter of them; y is 0 at "
+                "the apex, -0.08 on the base: are heights counted from the base? y - 0.08"));
+  EXPECT_THAT(refusal("20", heap), HasSubstr("9 of 9 places lie above the heap's surface"));
+  EXPECT_THAT(refusal("-160", heap), HasSubstr("9 of 9 places lie below the base"));
+  EXPECT_THAT(refusal("-80", heap), Not(HasSubstr("places lie")));
+  EXPECT_THAT(refusal("0", layer), HasSubstr("9 of 9 places lie at or above the surface"));
+  EXPECT_THAT(refusal("100", layer), HasSubstr("are heights counted from the base?"));
+  EXPECT_THAT(refusal("-300", layer), HasSubstr("9 of 9 places lie below the base"));
+  EXPECT_THAT(refusal("-50", layer), Not(HasSubstr("places lie")));
+}
+
 // What the file says of dimensions is not ignored, and options of the other geometry neither.
 TEST(ImportField, DimensionsAndOptionsThatContradictAreSaid) {
   const Folder folder;

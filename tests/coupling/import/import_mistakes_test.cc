@@ -51,17 +51,17 @@ TEST(ImportMistakes, MistakesInCsv) {
        "g.txt: is empty, expected a line of names such as id,x,y,radius,mass"},
       {"id,x,y,radius,mass\n", c, "", "the tables of grains hold no row"},
       {"id,x,y,radus,mass\n1,0,0,1,1\n", c, "",
-       "g.txt:1: no column \"radius\"; found: id x y radus mass; did you mean radus? Other names "
-       "by "
+       "g.txt:1: no column \"radius\"; found: id x y radus mass; nearest: radus; other names by "
        "--column radius=THEIRS"},
-      {"id,x,y,Rp [m],mass\n1,0,0,1,1\n", c, "", "did you mean Rp [m]? Other names by --column"},
-      {"id,x,y,d,mass\n1,0,0,1,1\n", c, "", "did you mean d (--column diameter=d)? Other"},
+      {"id,x,y,Rp [m],mass\n1,0,0,1,1\n", c, "", "nearest: Rp [m]; other names by --column"},
+      {"id,x,y,d,mass\n1,0,0,1,1\n", c, "", "nearest: d (--column diameter=d); other"},
       {"number,x,y,radius,mass\n1,0,0,1,1\n", c, "",
-       "no column \"id\"; found: number x y radius mass; did you mean number"},
-      {"id,xc,yc,radius,mass\n1,0,0,1,1\n", c, "", "did you mean xc"},
-      {g, "i,j,f1,f2\n1,2,0,1\n", "", "did you mean f1"},
+       "no column \"id\"; found: number x y radius mass; nearest: number"},
+      {"id,xc,yc,radius,mass\n1,0,0,1,1\n", c, "", "nearest: x (xc), y (yc)"},
+      {g, "i,j,f1,f2\n1,2,0,1\n", "", "nearest: f1; other names"},
       {"id,x,y,radius\n1,0,0,1\n", c, "", "or --density"},
-      {g, "# c\ni,j,fx\n1,2,0\n", "", "c.txt:2: no column \"fy\"; found: i j fx; did you mean "},
+      {g, "# c\ni,j,fx\n1,2,0\n", "",
+       "c.txt:2: no column \"fy\"; found: i j fx; other names by --column fy=THEIRS"},
       {g, "i,j,fnx,fny\n1,2,0,1\n", "", "without friction: --column ftx,fty,ftz=0,0,0"},
       {g + "3,0,abc,1,1\n", c, "", "g.txt:4: column y: found \"abc\", expected a finite number"},
       {g + "3,0,nan,1,1\n", c, "", "g.txt:4: column y: found \"nan\", expected a finite number"},
@@ -115,7 +115,7 @@ TEST(ImportMistakes, MistakesInCsv) {
       {"id,x,y,outline,mass\n1,0,0,-1 -1;1 -1;0 1,1\n2,0,1,-1 -1;1 -1;0 1,1\n", c, "",
        "c.txt:2: contact of grains 1 and 2: those of polygons need px, py, nx and ny"},
       {g, c, "--column radius", "--column: found \"radius\", expected OURS=THEIRS"},
-      {g, c, "--column radios=r", "unknown name \"radios\"; did you mean radius"},
+      {g, c, "--column radios=r", "unknown name \"radios\"; nearest: radius"},
       {g, c, "--column i,j=a", "--column i,j=a: 2 names on the left, 1 on the right"},
       {g, c, "--column radius=r_p",
        "--column radius=r_p: no table that needs radius has a column \"r_p\""},
@@ -194,7 +194,9 @@ TEST(ImportMistakes, MistakesInCsv) {
     expect_refused("csv", mistake);
   }
   expect_refused(
-      "cvs", {g, c, "", "--from: unknown format \"cvs\"; allowed: lammps, liggghts, yade, csv"});
+      "cvs",
+      {g, c, "",
+       "--from: unknown format \"cvs\"; nearest: csv; allowed: lammps, liggghts, yade, csv"});
 }
 
 TEST(ImportMistakes, MistakesInDumps) {
@@ -209,9 +211,9 @@ TEST(ImportMistakes, MistakesInDumps) {
     return text.replace(text.find(from), from.size(), to);
   };
   const std::vector<Mistake> mistakes{
-      {g, c, "", "c.txt:9: no column \"i\"; found: index c_ids[1] c_ids[2] c_p[1]"},
+      {g, c, "", "c.txt:9: no columns \"i\", \"j\", \"fx\"; found: index c_ids[1] c_ids[2] c_p[1]"},
       {changed(g, " radius", " c_r"), c, columns,
-       "g.txt:9: no column \"radius\"; found: id type x y z c_r mass; did you mean "},
+       "g.txt:9: no column \"radius\"; found: id type x y z c_r mass; not used so far: type c_r; "},
       {cut(g, 1), c, columns,
        "truncated: step 7 has 6 rows announced, 5 there (the last one ends without a line end)"},
       {cut(g, 60), c, columns, "g.txt:15: truncated: step 7 has 6 rows announced, 5 there"},
@@ -335,8 +337,7 @@ TEST(ImportMistakes, ColumnsThatAreNearlyOurs) {
   };
   const Output output = import("");
   EXPECT_EQ(output.code, 0);
-  EXPECT_THAT(output.err,
-              HasSubstr("g.csv:1: the column \"fixd\" is not used; did you mean fixed"));
+  EXPECT_THAT(output.err, HasSubstr("g.csv:1: the column \"fixd\" is not used; nearest: fixed"));
   EXPECT_THAT(output.err, ::testing::Not(HasSubstr("temperature")));
   EXPECT_THAT(import(" --column fixed=fixd").err, ::testing::Not(HasSubstr("is not used")));
 }

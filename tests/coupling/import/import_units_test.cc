@@ -159,8 +159,7 @@ TEST(ImportUnits, MomentsOfInertiaInAnotherUnitAreDoubted) {
 
 TEST(ImportUnits, WhatIsNoneIsSaidInALine) {
   const std::string unknown =
-      ", of m g s N Pa J Hz rad deg, with n u m c d k M G before; where it is no unit: --column "
-      "'x=x (inch)'\n";
+      ", of m g s N Pa J Hz rad deg, with n u m c d k M G before; convert the column\n";
   const auto head = [](const std::string& x, const std::string& more = "mass") {
     return fmt::format("id,{},y,radius,{}\n1,0,0,1,1\n", x, more);
   };
@@ -172,12 +171,13 @@ TEST(ImportUnits, WhatIsNoneIsSaidInALine) {
            unknown},
       {head("x (kg)"), "", "column x: found the unit \"kg\", allowed: m or another"},
       {head("pos [s]"), "--column x=pos", "column pos (x): found the unit \"s\", allowed: m or"},
-      {head("x", "mass (mN)"), "", "column mass: found the unit \"mN\", allowed: kg or another"},
+      {head("x", "mass (mN)"), "",
+       "column mass: found the unit \"mN\", allowed: kg (2D: kg/m) or another"},
       {head("x", "density (kg)"), "",
        "column density: found the unit \"kg\", allowed: kg/m3 (2D: kg/m2) or another"},
       {head("x", "density (g/cm3)"), "",
        "g.csv:1: column density: found \"density (g/cm3)\" in a packing in 2D, allowed: density "
-       "in kg/m2, volume in m2\n"},
+       "in kg/m2, volume in m2, mass in kg or kg/m\n"},
       {head("x", "mass,volume (mm2)") + "", "--dim 3", "no column \"z\""},
       {head("x", "mass,fixed (m)"), "",
        "column fixed: found the unit \"m\", allowed: none, a number without a unit\n"},

@@ -220,16 +220,49 @@ TEST(ImportVtkData, ListsOfFilesNameTheirFiles) {
               HasSubstr("only lists the files that hold the points; give these: g_0.vtp g_1.vtp"));
 }
 
+std::vector<std::optional<long long>> steps_of(const std::vector<std::string>& names) {
+  std::vector<NamedFile> files;
+  for (const std::string& name : names) files.push_back({name, true, {}});
+  return steps_of_names(files).steps;
+}
+
 TEST(ImportVtkData, StepsAreTheNumberThatDiffers) {
   using Steps = std::vector<std::optional<long long>>;
-  EXPECT_EQ(steps_of_names({"a1/dump100.vtk"}), Steps{100});
-  EXPECT_EQ(steps_of_names({"g.vtp"}), Steps{std::nullopt});
-  EXPECT_EQ(steps_of_names({"g_100_s1.vtp", "c_100_s1.vtp", "g_200_s1.vtp", "c_200_s1.vtp"}),
+  EXPECT_EQ(steps_of({"a1/dump100.vtk"}), Steps{100});
+  EXPECT_EQ(steps_of({"g.vtp"}), Steps{std::nullopt});
+  EXPECT_EQ(steps_of({"g_100_s1.vtp", "c_100_s1.vtp", "g_200_s1.vtp", "c_200_s1.vtp"}),
             (Steps{100, 100, 200, 200}));
-  EXPECT_EQ(steps_of_names({"g_100_s1.vtp", "g_200_s1.vtp", "c_200_s1.vtp"}),
-            (Steps{100, 200, 200}));
-  EXPECT_EQ(steps_of_names({"g10.vtp", "c10.vtp", "g20.vtp", "c20.vtp"}), (Steps{10, 10, 20, 20}));
-  EXPECT_THROW(steps_of_names({"g_1_p0.vtp", "g_1_p1.vtp", "g_2_p0.vtp"}), std::invalid_argument);
+  EXPECT_EQ(steps_of({"g_100_s1.vtp", "g_200_s1.vtp", "c_200_s1.vtp"}), (Steps{100, 200, 200}));
+  EXPECT_EQ(steps_of({"g10.vtp", "c10.vtp", "g20.vtp", "c20.vtp"}), (Steps{10, 10, 20, 20}));
+  EXPECT_THROW(steps_of({"g_1_p0.vtp", "g_1_p1.vtp", "g_2_p0.vtp"}), std::invalid_argument);
+}
+
+TEST(ImportVtkData, FilesWithoutAGrainInCommonArePiecesOfOneStep) {
+  using Steps = std::vector<std::optional<long long>>;
+  const std::function<RowKeys()> low =
+                                     [] {
+                                       return RowKeys{"1", "2"};
+                                     },
+                                 high = [] {
+                                   return RowKeys{"3", "4"};
+                                 };
+  const NamedSteps pieces = steps_of_names({{"g_0.vtp", true, low},
+                                            {"g_1.vtp", true, high},
+                                            {"c_0.vtp", false, {}},
+                                            {"c_1.vtp", false, {}}});
+  EXPECT_EQ(pieces.steps, Steps(4));
+  EXPECT_THAT(pieces.notes, ::testing::ElementsAre(HasSubstr("are pieces of one step")));
+  // Of two numbers that is the step within which no grain is there twice.
+  const std::vector<NamedFile> both{{"g_0_100.vtp", true, low},
+                                    {"g_1_100.vtp", true, high},
+                                    {"g_0_200.vtp", true, low},
+                                    {"g_1_200.vtp", true, high}};
+  EXPECT_EQ(steps_of_names(both).steps, (Steps{100, 100, 200, 200}));
+  const NamedSteps steps = steps_of_names({{"g_0.vtp", true, low}, {"g_1.vtp", true, low}});
+  EXPECT_EQ(steps.steps, (Steps{0, 1}));
+  EXPECT_TRUE(steps.notes.empty());
+  EXPECT_THAT(steps_of_names({{"g_0.vtp", true, {}}, {"g_1.vtp", true, {}}}).notes,
+              ::testing::ElementsAre(HasSubstr("taken as steps (without ids")));
 }
 
 }  // namespace

@@ -240,7 +240,8 @@ TEST(FitCommand, RefusesWithOneLine) {
   const Folder folder;
   const std::string heap = folder / "heap.h5", out = " -o " + (folder / "out");
   dem::write_snapshot(heap, "/pile", osl_heap(1));
-  expect_refusal(program("fit " + heap + " --model jansen" + out), "fit.models: found \"jansen\"");
+  expect_refusal(program("fit " + heap + " --model jansen" + out),
+                 "--model: fit.models: found \"jansen\"");
   expect_refusal(program("fit " + heap + " --set material.friction=1" + out), "allowed: fit");
   expect_refusal(
       program("fit " + heap + " --set fit.heights=20,40" + out),

@@ -99,9 +99,11 @@ TEST(FitDoubts, OneTableOfTheWrongSignIsNamed) {
   EXPECT_TRUE(warnings_of(check_packing(s)).empty());
   turn(s, true, false);
   EXPECT_THAT(tension_in(check_packing(s)), HasSubstr("contacts between grains pull"));
-  EXPECT_THAT(tension_in(check_packing(s)), HasSubstr("in the table of the pairs"));
-  // Without gravity the mean stress tells.
+  EXPECT_THAT(tension_in(check_packing(s)), HasSubstr("(import --flip-forces=pairs)"));
+  // Without gravity, too.
   s.gravity.setZero();
+  EXPECT_THAT(tension_in(check_packing(s)), HasSubstr("(import --flip-forces=pairs)"));
+  turn(s, false, true);
   EXPECT_THAT(tension_in(check_packing(s)), HasSubstr("the mean stress is tension"));
   s.contacts.clear();
   EXPECT_TRUE(warnings_of(check_packing(s)).empty());

@@ -115,7 +115,8 @@ TEST(KnownTruth, CommandsLeadFromTablesToTheVerdict) {
                                              files, r, name, load, folder / "layers.h5"));
       ASSERT_EQ(out.code, 0) << out.err;
       EXPECT_THAT(out.out, HasSubstr("weight carried by walls and fixed grains: 1\n"));
-      EXPECT_EQ(out.err, "");
+      // The lattice leaves gaps to its sides, and noise makes some contacts pull.
+      EXPECT_THAT(out.err, ::testing::Not(::testing::ContainsRegex("unbalanced|weight|hardly")));
     }
   }
   const Output average =

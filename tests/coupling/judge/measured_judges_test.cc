@@ -190,7 +190,7 @@ TEST(MeasuredJudges, AStrayPlaceHidesNothing) {
   const Output said = program("import-field " + folder.write("m.csv", scaled("Pa")) +
                               " --height 0.08 --slope 30 --rho-g 4000 -o " + (folder / "f.h5"));
   EXPECT_THAT(said.err, HasSubstr("1 of 22 places lie outside the heap"));
-  EXPECT_THAT(said.err, HasSubstr("of the weight above them: are the units"));
+  EXPECT_THAT(said.err, HasSubstr(" errors off: are the units"));
 }
 
 // A measurement of the middle alone carries what stands above the middle.

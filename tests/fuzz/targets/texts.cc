@@ -12,7 +12,7 @@ void fuzz_texts(std::string_view bytes) {
     attempt([&] { coupling::parse_wall(line); });
     attempt([&] { coupling::parse_periodic(line); });
     attempt([&] { coupling::parse_grid(line); });
-    attempt([&] { coupling::ColumnNames(coupling::csv_format().columns).choose(line); });
+    attempt([&] { coupling::ColumnNames(coupling::csv_format().columns).choose({line}); });
   }
 }
 

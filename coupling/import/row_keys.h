@@ -1,0 +1,25 @@
+// Which grains or pairs the rows of a table are of, to tell pieces of one table from repeated ones.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "coupling/import/table.h"
+
+namespace grainfield::coupling {
+
+/// Ids of grains, or pairs of bodies in any order; sorted, each once.
+using RowKeys = std::vector<std::string>;
+
+/// Of the rows of a table. Empty where no column tells them or where the table cannot be read.
+RowKeys row_keys(const ForeignTable& table, TableKind kind, ColumnNames& names,
+                 TableReader& reader);
+
+/// Whether two tables have nearly all rows of their own: less than half of the smaller one are in
+/// the other. False where one is empty.
+bool are_apart(const RowKeys& a, const RowKeys& b);
+
+/// Reads row_keys() of a table.
+using ReadKeys = std::function<RowKeys(const ForeignTable&, TableKind)>;
+
+}  // namespace grainfield::coupling
