@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "dem/snapshot/contact_changes.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -98,7 +100,8 @@ double total_over_load(const dem::Snapshot& unloaded, const dem::Snapshot& loade
   const int up = loaded.dim - 1;
   const double load = dem::total_applied_force(unloaded)[up] - dem::total_applied_force(loaded)[up];
   if (load == 0) return std::numeric_limits<double>::quiet_NaN();
-  return (base_force(loaded)[up] - base_force(unloaded)[up]) / load;
+  if (up == 2) return (dem::base_force(loaded) - dem::base_force(unloaded)).z() / load;
+  return (coupling::base_force(loaded) - coupling::base_force(unloaded)).y() / load;
 }
 
 }  // namespace grainfield::coupling
