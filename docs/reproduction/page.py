@@ -45,6 +45,8 @@ result" means not run or not measured; the row says which.
   with its reading error: 1° for angles, 0.01 for fractions, 25 % where the source says "about".
 - **Spread too wide to tell**: 2 standard errors exceed {100 * TOO_WIDE:.0f} % of the value. For the ratios of volume
   fraction and coordination, the effect that the source reports replaces the value (0.09, 0.08, 0.04).
+- **Recorded strains.** Some strains are known only to the distance of the recorded states. A miss within half of
+  this distance cannot tell.
 - **Dips and peaks** are significant at 5 % over [all pours together](#dips-and-peaks-of-all-pours). A peak also
   counts as "no dip". The result "neither" is uninformative: it is compatible with a dip and with no dip.
 - **Fits.** A fit is beyond the errors when its χ²/dof exceeds the value that a true model exceeds in 1 of 100
@@ -108,7 +110,10 @@ def figure_line(row: Row, results: Results) -> tuple[str, str]:
     """A line of a table, and its agreement."""
     ours, said = judged(row, results)
     study, lacking = row["study"], said == ""
-    realizations = "" if lacking else number(results, study, "ensemble.realizations", "g")
+    count = "ensemble.realizations." + row.get("member", row.get("to", ""))  # those of the row's value of a sweep
+    if results.plain(study, count) is None:
+        count = "ensemble.realizations"
+    realizations = "" if lacking else number(results, study, count, "g")
     cells = [row["source"], row["what"], with_unit(row["theirs"], row), band(row), ours, said, realizations,
              study_cell(results, study)]
     return "| " + " | ".join(cells) + " |\n", said

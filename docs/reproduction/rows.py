@@ -19,6 +19,7 @@ FOLDER = pathlib.Path(__file__).resolve().parent / "figures"
 FILES = ("roul-piles", "roul-fits", "roul-layers", "wellmann", "liffman")
 NOT_RUN = "not run"
 WIDE = "spread too wide to tell"
+COARSE = "nearer than the recorded strains can tell"
 TOO_WIDE = 0.5  #: share of the value, or of the effect, that 2 standard errors may take
 
 Row = dict[str, Any]
@@ -117,14 +118,15 @@ def _dip_by_itself(row: Row, results: Results) -> str | None:
 
 
 def _pair(row: Row, results: Results) -> tuple[Measured, Measured] | None:
-    """Two numbers: of the studies `over` and `study`, of the members `from` and `to`, or of these keys."""
+    """Two numbers: of the studies `over` and `study`, of the members `from` and `to`, or of these keys
+    (of the row's member, if it has one)."""
     study = row["study"]
     if "over" in row:
         a, b = (results.number(one, row["key"]) for one in (row["over"], study))
     elif "key" in row:
         a, b = (results.number(study, row["key"], row[end]) for end in ("from", "to"))
     else:
-        a, b = (results.number(study, row[end]) for end in ("from", "to"))
+        a, b = (results.number(study, row[end], row.get("member", "")) for end in ("from", "to"))
     return None if a is None or b is None else (a, b)
 
 
@@ -331,13 +333,16 @@ def number_text(found: Measured, row: Row) -> str:
 def agreement(found: Measured, row: Row) -> str:
     """Agrees when the source's range and ours ± 2 standard errors overlap.
 
-    It says nothing with one realization, or where 2 standard errors exceed TOO_WIDE of the source's
+    It says nothing with one realization, where the miss is within `resolution` (half the distance of
+    the recorded states), or where 2 standard errors exceed TOO_WIDE of the source's
     value (of the effect that a ratio reports).
     """
     if math.isnan(found.error):
         return "no error, no statement"
     low, high = row["range"]
     miss = max(0.0, low - found.value, found.value - high)
+    if 0 < miss <= row.get("resolution", 0):
+        return COARSE
     if miss > 2 * found.error:
         return f"differs by {with_unit(f'{miss:.2g}', row)} ({miss / found.error:.1f} standard errors)"
     stake = row.get("effect", abs((low + high) / 2))

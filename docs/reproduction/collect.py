@@ -1,0 +1,114 @@
+#!/usr/bin/python3
+"""Joins the finished runs of a list into one summary, results/CASE.json.
+
+    docs/reproduction/collect.py docs/reproduction/runs/wellmann.txt
+
+A run NAME-NUMBER of the list is one realization of NAME (states/LIST/NAME-NUMBER.json). A number of its
+summary becomes KEY.NAME, the mean over the realizations, with KEY.standard_error.NAME, KEY.least.NAME
+and KEY.most.NAME, as in the summary of a sweep. The recorded states add ADDED:
+
+    q_over_p_at_0.04, pressure_at_0.04 (Pa): axial_q_over_p and p of a compression at a strain of 0.04
+    shear_stiffness.PART: of a NAME that begins with shear_, the slope of |sigma_xz| over the shear,
+        divided by the first mean stress; PART names an interval of shears in PARTS
+
+Ends with 2 if no run of the list has ended. Needs numpy.
+"""
+import argparse
+import csv
+import json
+import math
+import pathlib
+import sys
+
+import numpy
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE / "runs"))
+
+from next import fail, read_list  # noqa: E402
+from record import write_file  # noqa: E402
+
+PARTS = {"first": (0.0, 0.04), "middle": (0.08, 0.12), "last": (0.14, 0.20)}
+#: The keys that this script adds to those of a summary.
+ADDED = ("q_over_p_at_0.04", "pressure_at_0.04", *(f"shear_stiffness.{part}" for part in PARTS))
+TOLERANCE = 1e-3  # of the strain at which a state is recorded
+
+
+def read_states(file):
+    """The columns of NAME.states_of_realizations.csv as arrays."""
+    lines = [line for line in file.read_text().splitlines() if not line.startswith("#")]
+    rows = list(csv.DictReader(lines))
+    return {name.removesuffix("_Pa"): numpy.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
+
+
+def compression_figures(states):
+    """What a compression has at 0.04 while it is loaded; nothing where no state is recorded there."""
+    loading = states["strain"][: int(numpy.argmax(states["strain"])) + 1]
+    at = int(numpy.argmin(abs(loading - 0.04)))
+    if abs(loading[at] - 0.04) > TOLERANCE:
+        return {}
+    return {"q_over_p_at_0.04": states["axial_q_over_p"][at], "pressure_at_0.04": states["p"][at]}
+
+
+def shear_figures(states):
+    """Slopes of |sigma_xz| / p0 over the shear by least squares, by part."""
+    shear, stress = states["strain"], abs(states["sigma_xz"]) / states["p"][0]
+    out = {}
+    for part, (low, high) in PARTS.items():
+        within = (shear >= low - TOLERANCE) & (shear <= high + TOLERANCE)
+        if within.sum() > 1:
+            out[f"shear_stiffness.{part}"] = numpy.polyfit(shear[within], stress[within], 1)[0]
+    return out
+
+
+def figures_of(name, record, states):
+    """The finite numbers of a run by key."""
+    numbers = {key: value for key, value in record["summary"].items() if isinstance(value, (int, float))
+               and not key.startswith(("ensemble.", "time.", "memory."))}
+    numbers["time.cpu_s"] = record["cpu_seconds"]
+    if states is not None:
+        numbers |= shear_figures(states) if name.startswith("shear_") else compression_figures(states)
+    return {key: float(value) for key, value in numbers.items() if math.isfinite(value)}
+
+
+def collect(runs):
+    """The joined summary of [(name, record, states or None)]."""
+    out = {}
+    for name in {name for name, *_ in runs}:
+        of = [figures_of(*run) for run in runs if run[0] == name]
+        out[f"ensemble.realizations.{name}"] = len(of)
+        for key in set().union(*of):
+            values = [figures[key] for figures in of if key in figures]
+            out[f"{key}.{name}"] = float(numpy.mean(values))
+            out[f"{key}.least.{name}"], out[f"{key}.most.{name}"] = min(values), max(values)
+            if len(values) > 1:
+                out[f"{key}.standard_error.{name}"] = float(numpy.std(values, ddof=1) / math.sqrt(len(values)))
+    return out
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("list", type=pathlib.Path, help="the runs")
+    listed = options.parse_args().list
+    if not listed.is_file():
+        fail(f"{listed}: no such list")
+    tag, planned = read_list(listed)
+    folder, runs, cases = HERE / "states" / listed.stem, [], set()
+    for name, _, case, _ in planned:
+        file, states = folder / f"{name}.json", folder / f"{name}.states_of_realizations.csv"
+        if file.exists():
+            runs.append((name.rpartition("-")[0], json.loads(file.read_text()),
+                         read_states(states) if states.exists() else None))
+            cases.add(case)
+    if len(cases) != 1:
+        fail(f"{listed}: found finished runs of {len(cases)} cases; allowed: one case")
+    case, joined = cases.pop(), collect(runs)
+    most = max(value for key, value in joined.items() if key.startswith("ensemble.realizations."))
+    joined |= {"case.name": case, "case.command": f"docs/reproduction/collect.py docs/reproduction/runs/{listed.name}",
+               "version": tag, "ensemble.realizations": most}
+    write_file(HERE / "results" / f"{case}.json", (json.dumps(joined, indent=1, sort_keys=True) + "\n").encode())
+    print(f"{case}.json: {len(runs)} of {len(planned)} runs")
+
+
+if __name__ == "__main__":
+    main()
