@@ -246,8 +246,9 @@ Scale scale_of(const FieldScene& scene) {
   if (scene.specimen == Specimen::layer) return scale_of_load(scene.told.force, h, scene.told.dim);
   if (scene.specimen == Specimen::heap)
     return scale_of_heaps(h, scene.unit, scaled_alone(n), "apex", scene.told.dim);
-  return {h,     scene.unit, kNan,
-          "N/m", "origin",   fmt::format("h = {:.6g} m; realizations: {}", h, n)};
+  return {h,        scene.unit,
+          kNan,     scene.told.dim == 3 ? "Pa" : "N/m",
+          "origin", fmt::format("h = {:.6g} m; realizations: {}", h, n)};
 }
 
 }  // namespace

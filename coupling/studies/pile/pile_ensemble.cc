@@ -12,6 +12,7 @@
 #include "coupling/heap/scaled.h"
 #include "coupling/heap/setup.h"
 #include "coupling/run/averaging_setup.h"
+#include "dem/snapshot/contact_changes.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -137,7 +138,7 @@ void PileEnsemble::add(const Realization& realization, const PileFrame& frame) {
   for (const dem::Grain& grain : pile.grains) {
     if (!grain.fixed) weight += grain.mass * frame.gravity;
   }
-  own("base.weight_ratio", base_force(pile).y() / weight);
+  own("base.weight_ratio", dem::base_force(pile).y() / weight);
   own("dem.repose_angle_left_deg", frame.repose_left_deg);
   own("dem.repose_angle_right_deg", frame.repose_right_deg);
   own("dem.volume_fraction", frame.volume_fraction);
