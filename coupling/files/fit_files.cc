@@ -17,8 +17,8 @@
 #include "coupling/fit/coverage.h"
 #include "coupling/fit/fits.h"
 #include "coupling/fit/heap_result.h"
-#include "coupling/fit/setup.h"
 #include "coupling/models/parse_choices.h"
+#include "coupling/observe/setup.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/judgement.h"
@@ -76,9 +76,7 @@ std::vector<std::string> heap_fields(const std::string& file) {
   std::vector<std::string> out;
   for (const std::string& name : list_fields(file)) {
     const Field field = read_field(file, name);
-    const auto frame = field.attributes.find("frame");
-    if (frame == field.attributes.end() || frame->second.compare(0, 4, "heap") != 0) continue;
-    if (field.find("sigma_xx") == nullptr || field.attributes.count("method") == 0) continue;
+    if (!field.is_of_heap() || field.find("sigma_xx") == nullptr || !field.has("method")) continue;
     if (field.nx > 0) out.push_back(name);
   }
   return out.empty() ? list_fields(file) : out;
