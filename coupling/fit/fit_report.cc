@@ -342,8 +342,7 @@ std::vector<Section> fit_pictures(const EnsembleFits& fits) {
                    "constants and are smoothed with the kernel of the averaging; finite elements "
                    "lie on their closed forms (table below).",
                    seen.scale.h, seen.scale.unit * seen.scale.h);
-    picture.caption +=
-        fmt::format(" The grey band is one standard error on either side. {}.", weights_note(fits));
+    picture.caption += fmt::format(" {}.", weights_note(fits));
     out.emplace_back(std::move(picture));
   }
   for (Section& section : fit_map_sections(fits, best)) out.push_back(std::move(section));
@@ -355,7 +354,7 @@ std::vector<Section> fit_pictures(const EnsembleFits& fits) {
     }
     if (!frames.empty()) {
       Picture picture = curves(
-          "Where the best model fails: " + best, from,
+          "Where " + best + " fails, over the standard error", from,
           fmt::format("({} - model) / standard error", seen.measured ? "measured" : "grains"),
           frames);
       picture.caption = "Beyond 2 or 3 in a row the model is wrong there.";

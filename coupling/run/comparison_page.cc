@@ -15,6 +15,11 @@ std::string shown(double value, int digits = 3) {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
 }
 
+// "rough" of rough=layer (base=rough).
+std::string legend_of(const ModelProfiles& model) {
+  return model.label.starts_with(model.key + "=") ? model.key : model.label;
+}
+
 }  // namespace
 
 Frame profile_frame(const Comparison& c, std::size_t profile) {
@@ -23,7 +28,8 @@ Frame profile_frame(const Comparison& c, std::size_t profile) {
   if (p.error.size() > 0) out.series.front().error = p.error / c.scale.unit;
   for (std::size_t m = 0; m < c.models.size(); ++m) {
     const DrawnLine line = drawn_line(c, m, profile);
-    out.series.push_back({c.models[m].label, line.x / c.scale.h, line.y / c.scale.unit, {}, false});
+    out.series.push_back(
+        {legend_of(c.models[m]), line.x / c.scale.h, line.y / c.scale.unit, {}, false});
   }
   return out;
 }

@@ -10,6 +10,7 @@ namespace grainfield::coupling {
 
 /// Grains, with the band of their error, and models: lengths in h, stresses in
 /// comparison.scale.unit.
+/// The legend has a model's own label without its settings, which distances_table tells.
 Frame profile_frame(const Comparison& comparison, std::size_t profile);
 std::vector<Frame> profile_frames(const Comparison& comparison);
 
@@ -20,8 +21,8 @@ Table distances_table(const Comparison& comparison, const std::string& unit,
                       const std::string& at = "x/h");
 Table shapes_table(const Comparison& comparison, const std::string& unit,
                    const std::string& at = "x/h");
-/// Appends what tables for reading show of every place (profile_tables of output/tables.h); nothing
-/// without models.
+/// Appends the comparison at every place (profile_tables of output/tables.h), as tables.html has
+/// it; nothing without models.
 void add_profile_tables(Report& report, const Comparison& comparison);
 
 /// Values by radius from 0, drawn to both sides of the axis: 2 n - 1, of a matrix its rows.

@@ -13,6 +13,7 @@
 #include "coupling/output/judgement.h"
 #include "coupling/output/vtu.h"
 #include "coupling/report/judgement.h"
+#include "coupling/run/comparison_page.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/statistics/spread.h"
@@ -87,10 +88,18 @@ std::string write_page(const std::string& folder, const StudyResult& result) {
                  name),
              false});
   }
+  if (!result.comparison.models.empty()) {
+    Report tables{title_of(result.value), "Grains and models, place by place", {}};
+    add_profile_tables(tables, result.comparison);
+    write_report(folder + "/tables.html", tables);
+    report.sections.emplace_back(
+        Text{"Place by place", "tables.html has the grains and the models at every place.", false});
+  }
+  const int lead = picture_first(report);
   if (!result.warnings.empty()) {
-    const auto at = report.sections.begin() + (report.sections.empty() ? 0 : 1);
     report.sections.insert(
-        at, Text{"To mind", fmt::format("{}", fmt::join(result.warnings, "\n\n")), false});
+        report.sections.begin() + lead,
+        Text{"To mind", fmt::format("{}", fmt::join(result.warnings, "\n\n")), false, true});
   }
   return write_report(folder + "/report.html", report).complaint();
 }
