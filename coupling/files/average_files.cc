@@ -208,6 +208,7 @@ NamedFields average_files(AverageRequest request, Gaps* gaps, std::vector<std::s
     }
     if (all.load > 0) field.attributes["F"] = fmt::format("{}", all.load);
     field.attributes["frame"] = frame_text(request.frame, all.dim, request.rings);
+    field.attributes.insert(all.added_forces.begin(), all.added_forces.end());
     return field;
   };
 

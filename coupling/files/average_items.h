@@ -1,6 +1,7 @@
 // The packings of an averaging: their states, which way is up in each, and how far they reach.
 #pragma once
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,6 +35,7 @@ struct AveragedExtents {
   int dim = 2;
   std::vector<PileFrame> heaps;                                      // frame "heap" only
   double least = std::numeric_limits<double>::infinity(), most = 0;  // of the depths
+  std::map<std::string, std::string> added_forces;  // attributes (added_forces_mark.h)
 };
 
 /// Measures the items and finds which way is up in each. Throws std::invalid_argument for packings

@@ -27,6 +27,7 @@
 #include "coupling/studies/pile/page.h"
 #include "coupling/studies/point_load/page.h"
 #include "coupling/version.h"
+#include "dem/snapshot/added_forces_mark.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -369,6 +370,9 @@ CompareOutcome compare_field(const CompareRequest& request) {
   if (scene.scene == Scene::response) comparison.judgement.noun = "layer";
   if (heap) comparison.judgement.noun = facts.dim == 3 ? "cone" : "pile";
   if (measured) out.carried = carried_lines(scenes, comparison.judgement);
+  if (const auto note = dem::added_forces_note(scene.field.attributes); !note.empty()) {
+    comparison.judgement.doubts.push_back(as_sentence(note));
+  }
   if (kernels.size() > 1) {
     comparison.judgement.notes.push_back(
         fmt::format("Fields are seen through different kernels, models through each one's own: {}.",

@@ -25,6 +25,7 @@
 #include "coupling/output/output_folder.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/version.h"
+#include "dem/snapshot/added_forces_mark.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -292,6 +293,9 @@ FitOutcome fit_files(const FitRequest& request) {
       take_what_was_measured(field, !request.case_file.empty(), overrides, value.get<FitSetup>());
     }
     data = observe_heap_field(value.get<FitSetup>(), field, out.packings.front());
+    if (const std::string note = dem::added_forces_note(field.attributes); !note.empty()) {
+      data.warnings.push_back(fmt::format("{}: {}", out.packings.front(), note));
+    }
     if (measured) {
       if (const auto share = carried_share(field)) out.carried = share_text(*share);
       const std::vector<std::string> doubts = measured_doubts(field);
