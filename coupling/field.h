@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace grainfield::coupling {
@@ -15,6 +16,12 @@ struct Column {
   Eigen::VectorXd error;    ///< standard error of the mean; nan with one realization; may be empty
   Eigen::MatrixXd samples;  ///< points x realizations: the single values; empty: not kept
 };
+
+/// What is known of a field: a text, a number, or one number per realization.
+using Attribute = std::variant<std::string, double, std::vector<double>>;
+using Attributes = std::map<std::string, Attribute>;
+/// For people: "lucy", "0.3", "31.2,30.7".
+std::string attribute_text(const Attribute& attribute);
 
 /// The components of stress in the plane, in the order of tables.
 inline const std::vector<std::string> kPlaneStress{"sigma_xx", "sigma_yy", "sigma_xy"};
@@ -29,12 +36,23 @@ struct Field {
   int nx = 0, ny = 0, nz = 0;
   int realizations = 1;
   std::vector<Column> columns;
-  std::map<std::string, std::string> attributes;  ///< what, kernel, width, units, versions
+  /// Their names and units: docs/file-formats.md.
+  Attributes attributes;
 
   const Column* find(const std::string& name) const;
   Column& add(const std::string& name, const std::string& unit);
+  bool has(const std::string& attribute) const { return attributes.count(attribute) > 0; }
+  /// An attribute that is a text; empty: there is none.
+  std::string word(const std::string& attribute) const;
+  /// An attribute that is a number, the mean of one per realization; nan: there is none.
+  double number(const std::string& attribute) const;
   /// Of import-field, not of grains.
-  bool is_measured() const;
+  bool is_measured() const { return word("method") == "measured"; }
+  /// In the frame of heaps, apex at the origin; its lengths may be over the height.
+  bool is_of_heap() const { return word("frame") == "heap"; }
+  bool is_over_height() const { return is_of_heap() && word("lengths") != "m"; }
+  /// Its points are radius and height of rings about the frame's axis.
+  bool is_of_rings() const { return has("rings"); }
 };
 
 }  // namespace grainfield::coupling

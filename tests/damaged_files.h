@@ -16,9 +16,8 @@
 #include "dem/snapshot/hdf5_file.h"
 
 #ifdef __SANITIZE_ADDRESS__
-// The library keeps a little of every file that it gives up. One suite is one source file.
-extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
+// The library keeps a little of every file that it gives up.
+extern "C" [[gnu::used]] inline const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
 #endif
 
 namespace grainfield::testing {

@@ -68,7 +68,7 @@ void add_import_field(CLI::App& app, Action& action) {
       const std::string name = given->name.empty() ? name_of_measured(field) : given->name;
       write_field_file(given->output, {{name, field}});
       say("{}: {} points{}, h = {} m\n", name, field.points.rows(),
-          field.points.cols() == 3 ? " in space" : "", field.attributes.at("h"));
+          field.points.cols() == 3 ? " in space" : "", field.number("h"));
       for (const Column& column : field.columns) {
         say("  {}: {} values, {} with errors ({})\n", column.name,
             column.value.array().isFinite().count(), column.error.array().isFinite().count(),

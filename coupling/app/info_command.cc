@@ -47,7 +47,7 @@ void show_field(const std::string& file, const std::string& name) {
                  : fmt::format(" (grid {} x {})", f.nx, f.ny),
       f.realizations, f.realizations == 1 ? "" : "s");
   for (const auto& column : f.columns) say("  {} ({})\n", column.name, column.unit);
-  for (const auto& [key, value] : f.attributes) say("  {}: {}\n", key, value);
+  for (const auto& [key, value] : f.attributes) say("  {}: {}\n", key, attribute_text(value));
 }
 
 }  // namespace

@@ -28,9 +28,8 @@ struct PowerRequest {
 
 bool holds_responses(const std::string& file) {
   const std::vector<std::string> names = list_fields(file);
-  return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
-    return read_field(file, name).attributes.count("F") > 0;
-  });
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return read_field(file, name).has("F"); });
 }
 
 // Responses to a load are compared with models as they are given, heaps are fitted.

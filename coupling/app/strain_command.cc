@@ -71,7 +71,7 @@ void add_strain(CLI::App& app, Action& action) {
       const StrainOutcome outcome = strain_files(request);
       write_field_file(given->output, {{"strain", outcome.field}});
       say("strain: {} points, measure {}, width {} m\n", outcome.field.points.rows(),
-          request.options.measure, outcome.field.attributes.at("width"));
+          request.options.measure, outcome.field.number("width"));
       if (!outcome.images.empty()) note("{}", outcome.images);
       if (!outcome.doubt.empty()) note("warning: {}", outcome.doubt);
       if (!outcome.report.empty()) {

@@ -102,10 +102,8 @@ Field average_in(const Packing& packing, const Region& region, const Eigen::Matr
                   found);
   }
   if (gaps) gaps->add(found);
-  field.attributes = {{"method", options.method},
-                      {"kernel", options.kernel},
-                      {"width", fmt::format("{} m", options.width)},
-                      {"sign", "tension positive"}};
+  field.attributes["sign"] = "tension positive";
+  say_averaging(options, field);
   return field;
 }
 
@@ -143,6 +141,12 @@ Field difference(const Packing& unloaded, const Packing& loaded, const Eigen::Ma
 }
 
 }  // namespace
+
+void say_averaging(const AverageOptions& options, Field& field) {
+  field.attributes["method"] = options.method;
+  field.attributes["kernel"] = options.kernel;
+  field.attributes["width"] = options.width;
+}
 
 const std::vector<Method>& methods() {
   static const std::vector<Method> all{

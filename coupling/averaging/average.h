@@ -27,6 +27,9 @@ namespace grainfield::coupling {
 Field average(const dem::Snapshot& snapshot, const Eigen::MatrixXd& points,
               const AverageOptions& options, Gaps* gaps = nullptr);
 
+/// How it was averaged, as attributes: method, kernel and width, m.
+void say_averaging(const AverageOptions& options, Field& field);
+
 /// average(loaded) - average(unloaded), column by column; `grains` is the smaller count. Throws
 /// std::invalid_argument "snapshots do not belong together: ..." unless both hold the same grains.
 Field response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,

@@ -6,28 +6,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "dem/snapshot/contact_changes.h"
+
 namespace grainfield::coupling {
-namespace {
-
-// Calls visit(contact point, force on the layer) for every contact of a free grain with the floor
-// or a fixed grain.
-template <class Visit>
-void for_each_support(const dem::Snapshot& snapshot, Visit&& visit) {
-  for (const dem::Contact& contact : snapshot.contacts) {
-    const dem::Grain& gi = snapshot.grains[static_cast<std::size_t>(contact.i)];
-    const Eigen::Vector2d point = contact.point.head<2>(), force = contact.force.head<2>();
-    if (contact.j < 0) {
-      const dem::Wall& wall = snapshot.walls[static_cast<std::size_t>(-1 - contact.j)];
-      if (!gi.fixed && wall.name == "floor") visit(point, force);
-      continue;
-    }
-    const bool fixed_j = snapshot.grains[static_cast<std::size_t>(contact.j)].fixed;
-    if (gi.fixed != fixed_j) visit(point, fixed_j ? force : Eigen::Vector2d(-force));
-  }
-}
-
-}  // namespace
-
 bool has_base(const dem::Snapshot& snapshot) {
   return std::any_of(snapshot.walls.begin(), snapshot.walls.end(),
                      [](const dem::Wall& wall) { return wall.name == "floor"; }) ||
@@ -35,7 +16,26 @@ bool has_base(const dem::Snapshot& snapshot) {
                      [](const dem::Grain& grain) { return grain.fixed; });
 }
 
+std::vector<BaseSupport> base_supports(const dem::Snapshot& snapshot) {
+  std::vector<BaseSupport> out;
+  for (const dem::Contact& contact : snapshot.contacts) {
+    const dem::Grain& gi = snapshot.grains[static_cast<std::size_t>(contact.i)];
+    if (contact.j < 0) {
+      const dem::Wall& wall = snapshot.walls[static_cast<std::size_t>(-1 - contact.j)];
+      if (!gi.fixed && wall.name == "floor") out.push_back({contact.point, contact.force});
+      continue;
+    }
+    const bool fixed_j = snapshot.grains[static_cast<std::size_t>(contact.j)].fixed;
+    if (gi.fixed != fixed_j) {
+      out.push_back({contact.point, fixed_j ? contact.force : Eigen::Vector3d(-contact.force)});
+    }
+  }
+  return out;
+}
+
 Field base_profile(const dem::Snapshot& snapshot, const Eigen::VectorXd& x, const Kernel& kernel) {
+  if (snapshot.dim != 2)
+    throw std::invalid_argument("stress on the base along a line: found a packing in space");
   if (!has_base(snapshot)) {
     std::string walls;
     for (const dem::Wall& wall : snapshot.walls) walls += (walls.empty() ? "" : ", ") + wall.name;
@@ -49,16 +49,16 @@ Field base_profile(const dem::Snapshot& snapshot, const Eigen::VectorXd& x, cons
   field.points.col(0) = x;
   field.points.col(1).setConstant(layer_frame(snapshot).floor);
   Eigen::VectorXd yy = Eigen::VectorXd::Zero(x.size()), xy = yy, count = yy;
-  for_each_support(snapshot, [&](const Eigen::Vector2d& point, const Eigen::Vector2d& force) {
+  for (const BaseSupport& s : base_supports(snapshot)) {
     for (Eigen::Index p = 0; p < x.size(); ++p) {
-      const double distance = x[p] - point.x();
+      const double distance = x[p] - s.point.x();
       if (std::abs(distance) >= kernel.range()) continue;
       const double weight = kernel.marginal(distance);
-      yy[p] -= weight * force.y();
-      xy[p] -= weight * force.x();
+      yy[p] -= weight * s.force.y();
+      xy[p] -= weight * s.force.x();
       count[p] += 1;
     }
-  });
+  }
   field.add("sigma_yy", "N/m").value = yy;
   field.add("sigma_xy", "N/m").value = xy;
   field.add("contacts", "1").value = count;
@@ -79,25 +79,12 @@ Field base_response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
   return change;
 }
 
-std::vector<BaseContact> base_contacts(const dem::Snapshot& snapshot) {
-  std::vector<BaseContact> out;
-  for_each_support(snapshot, [&](const Eigen::Vector2d& point, const Eigen::Vector2d& force) {
-    out.push_back({point, force});
-  });
-  return out;
-}
-
-Eigen::Vector2d base_force(const dem::Snapshot& snapshot) {
-  Eigen::Vector2d sum(0, 0);
-  for_each_support(snapshot, [&](const auto&, const Eigen::Vector2d& f) { sum += f; });
-  return sum;
-}
-
 double total_over_load(const dem::Snapshot& unloaded, const dem::Snapshot& loaded) {
   require_same_grains(unloaded, loaded);
-  const double load = dem::total_applied_force(unloaded).y() - dem::total_applied_force(loaded).y();
+  const int up = loaded.dim - 1;
+  const double load = dem::total_applied_force(unloaded)[up] - dem::total_applied_force(loaded)[up];
   if (load == 0) return std::numeric_limits<double>::quiet_NaN();
-  return (base_force(loaded).y() - base_force(unloaded).y()) / load;
+  return (dem::base_force(loaded) - dem::base_force(unloaded))[up] / load;
 }
 
 }  // namespace grainfield::coupling

@@ -51,23 +51,6 @@ std::vector<BaseSupport> supports_within(const dem::Snapshot& snapshot, const Re
 
 }  // namespace
 
-std::vector<BaseSupport> base_supports(const dem::Snapshot& snapshot) {
-  std::vector<BaseSupport> out;
-  for (const dem::Contact& contact : snapshot.contacts) {
-    const dem::Grain& gi = snapshot.grains[static_cast<std::size_t>(contact.i)];
-    if (contact.j < 0) {
-      const dem::Wall& wall = snapshot.walls[static_cast<std::size_t>(-1 - contact.j)];
-      if (!gi.fixed && wall.name == "floor") out.push_back({contact.point, contact.force});
-      continue;
-    }
-    const bool fixed_j = snapshot.grains[static_cast<std::size_t>(contact.j)].fixed;
-    if (gi.fixed != fixed_j) {
-      out.push_back({contact.point, fixed_j ? contact.force : Vector3d(-contact.force)});
-    }
-  }
-  return out;
-}
-
 double seen_from_above(const Kernel& kernel, double d) {
   const double half = kernel.range() * kernel.range() - d * d;
   return half > 0 ? kernel.along_line(d, -std::sqrt(half), std::sqrt(half)) : 0;

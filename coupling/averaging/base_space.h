@@ -14,13 +14,6 @@ namespace grainfield::coupling {
 /// distance d: 1/m2; 0 from its range on.
 double seen_from_above(const Kernel& kernel, double d);
 
-/// A contact of a layer with its base: where, m, and the force of the base on the grain, N.
-struct BaseSupport {
-  Eigen::Vector3d point, force;
-};
-/// Every contact of a free grain with a wall named "floor" or with a fixed grain, without images.
-std::vector<BaseSupport> base_supports(const dem::Snapshot& snapshot);
-
 /// Stress on the base at places (n x 2, packing's axes, m). Columns sigma_zz, sigma_xz and sigma_yz
 /// (Pa, tension positive: a pressing layer gives sigma_zz < 0), `contacts` (1: within the kernel's
 /// range). The points are (x, y, frame floor). Contacts with a wall named "floor" or with a fixed

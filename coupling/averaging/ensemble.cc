@@ -48,6 +48,15 @@ Field Ensemble::mean() const {
   return result;
 }
 
+Field Ensemble::with_samples() const {
+  Field out = mean();
+  if (realizations() < 2) return out;
+  for (Column& column : out.columns) {
+    if (column.name.starts_with("sigma_")) column.samples = samples(column.name);
+  }
+  return out;
+}
+
 Eigen::MatrixXd Ensemble::samples(const std::string& column) const {
   if (fields_.empty())
     throw std::invalid_argument("an ensemble without realizations has no samples");

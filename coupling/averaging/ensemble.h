@@ -19,6 +19,8 @@ class Ensemble {
   /// Mean, and standard error s/sqrt(N) of it (nan with one realization). A point that is nan in
   /// any realization is nan. Throws std::invalid_argument without realizations.
   Field mean() const;
+  /// The mean with the single values of the stresses, of two realizations or more.
+  Field with_samples() const;
   /// points x realizations of one column; for covariances. Throws for an unknown column.
   Eigen::MatrixXd samples(const std::string& column) const;
 

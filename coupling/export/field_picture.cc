@@ -17,20 +17,10 @@ constexpr std::size_t kMostLines = 8;
 // Coordinates nearer than this share of the field's extent are one.
 constexpr double kSame = 1e-6;
 
-// What stands behind an axis: lengths of heaps may be over their height.
-std::string of_length(const Field& field) {
-  const auto frame = field.attributes.find("frame");
-  const bool scaled = frame != field.attributes.end() &&
-                      frame->second.find("lengths over its height h") != std::string::npos;
-  return scaled ? "/h" : " (m)";
-}
-
 std::vector<std::string> axes_of(const Field& field) {
-  const auto frame = field.attributes.find("frame");
-  const bool rings =
-      frame != field.attributes.end() && frame->second.find("rings") != std::string::npos;
   if (field.points.cols() == 3) return {"x", "y", "z"};
-  return rings ? std::vector<std::string>{"r", "z"} : std::vector<std::string>{"x", "y"};
+  return field.is_of_rings() ? std::vector<std::string>{"r", "z"}
+                             : std::vector<std::string>{"x", "y"};
 }
 
 // Rows of points that share all coordinates but one, along which they are sorted; by the others'
@@ -121,7 +111,7 @@ Frame profile_frame(const Field& field, const Lines& lines, const Column& column
       if (a == lines.axis) continue;
       series.label += fmt::format("{}{} = {:.4g}{}", series.label.empty() ? "" : ", ",
                                   axes[static_cast<std::size_t>(a)], others[k++] + 0.0,
-                                  of_length(field) == "/h" ? " h" : " m");
+                                  field.is_over_height() ? " h" : " m");
     }
     series.x = field.points.col(lines.axis)(there);
     series.y = (normal ? -1 : 1) * column.value(there);
@@ -148,7 +138,7 @@ const Column& drawn_column(const Field& field, const std::string& column) {
 
 Picture field_picture(const std::string& title, const Field& field, const std::string& column) {
   const std::vector<std::string> axes = axes_of(field);
-  const std::string of = of_length(field);
+  const std::string of = field.is_over_height() ? "/h" : " (m)";
   if (field.nx > 1 && field.ny > 1 && field.points.cols() == 2) {
     const Column& drawn = drawn_column(field, column);
     return maps(title, axes[0] + of, axes[1] + of,

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -15,6 +14,7 @@
 #include "coupling/averaging/rings.h"
 #include "coupling/files/average_items.h"
 #include "coupling/files/placement.h"
+#include "coupling/heap/heap_field.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -129,26 +129,6 @@ void require_dimension(const AverageRequest& request, int dim) {
                                             : "COLUMNSxROWSxLAYERS, the snapshot is 3D"));
 }
 
-// The single values of the stresses, for covariances.
-Field with_samples(const Ensemble& ensemble) {
-  Field out = ensemble.mean();
-  if (ensemble.realizations() < 2) return out;
-  for (Column& column : out.columns) {
-    if (column.name.compare(0, 6, "sigma_") == 0) column.samples = ensemble.samples(column.name);
-  }
-  return out;
-}
-
-// "31.2,30.7": one number per heap.
-std::string each(const std::vector<PileFrame>& heaps,
-                 const std::function<double(const PileFrame&)>& number) {
-  std::string out;
-  for (const PileFrame& heap : heaps) {
-    out += fmt::format("{}{}", out.empty() ? "" : ",", number(heap));
-  }
-  return out;
-}
-
 }  // namespace
 
 void settle(AverageRequest& request, bool kernel_chosen, bool width_chosen) {
@@ -194,20 +174,12 @@ NamedFields average_files(AverageRequest request, Gaps* gaps, std::vector<std::s
                     has_base(*packing_in_frame(items.front().state, items.front(), request));
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(request.nx, all.left, all.right);
   const auto finish = [&](Field field) {
-    field.attributes["method"] = options.method;
-    field.attributes["kernel"] = options.kernel;
-    field.attributes["width"] = fmt::format("{}", options.width);
-    field.attributes["h"] = fmt::format("{}", all.depth);
-    if (!all.heaps.empty()) {
-      field.attributes["heap.h"] = each(all.heaps, [](const auto& f) { return f.height; });
-      field.attributes["rho_g_h"] = each(all.heaps, [](const auto& f) { return f.pressure(); });
-      field.attributes["left_deg"] =
-          each(all.heaps, [](const auto& f) { return f.repose_left_deg; });
-      field.attributes["right_deg"] =
-          each(all.heaps, [](const auto& f) { return f.repose_right_deg; });
-    }
-    if (all.load > 0) field.attributes["F"] = fmt::format("{}", all.load);
-    field.attributes["frame"] = frame_text(request.frame, all.dim, request.rings);
+    say_averaging(options, field);
+    field.attributes["h"] = all.depth;
+    if (!all.heaps.empty()) say_heaps(all.heaps, field);
+    if (all.load > 0) field.attributes["F"] = all.load;
+    field.attributes["frame"] = request.frame;
+    if (request.rings) field.attributes["rings"] = 1.0;
     field.attributes.insert(all.added_forces.begin(), all.added_forces.end());
     return field;
   };
@@ -231,8 +203,8 @@ NamedFields average_files(AverageRequest request, Gaps* gaps, std::vector<std::s
     }
   }
   NamedFields out;
-  out.emplace_back(request.response ? "response" : "average", finish(with_samples(fields)));
-  if (base) out.emplace_back("base_response", finish(with_samples(base_fields)));
+  out.emplace_back(request.response ? "response" : "average", finish(fields.with_samples()));
+  if (base) out.emplace_back("base_response", finish(base_fields.with_samples()));
   return out;
 }
 

@@ -1,7 +1,6 @@
 // The packings of an averaging: their states, which way is up in each, and how far they reach.
 #pragma once
 #include <limits>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,7 +34,7 @@ struct AveragedExtents {
   int dim = 2;
   std::vector<PileFrame> heaps;                                      // frame "heap" only
   double least = std::numeric_limits<double>::infinity(), most = 0;  // of the depths
-  std::map<std::string, std::string> added_forces;  // attributes (added_forces_mark.h)
+  Attributes added_forces;  // those of the first packing with such forces
 };
 
 /// Measures the items and finds which way is up in each. Throws std::invalid_argument for packings

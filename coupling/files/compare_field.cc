@@ -12,12 +12,13 @@
 #include <stdexcept>
 
 #include "continuum/settings.h"
+#include "coupling/files/added_forces.h"
 #include "coupling/files/measured_share.h"
-#include "coupling/fit/observations.h"
 #include "coupling/heap/heap_field.h"
 #include "coupling/judge/words.h"
 #include "coupling/models/parse_choices.h"
 #include "coupling/models/subject.h"
+#include "coupling/observe/seen_models.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/judgement.h"
 #include "coupling/output/output_folder.h"
@@ -27,12 +28,9 @@
 #include "coupling/studies/pile/page.h"
 #include "coupling/studies/point_load/page.h"
 #include "coupling/version.h"
-#include "dem/snapshot/added_forces_mark.h"
 
 namespace grainfield::coupling {
 namespace {
-
-constexpr double kSame = 1e-9;  // relative: loads and sizes of fields that belong together
 
 bool starts_with(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;
@@ -41,9 +39,9 @@ bool starts_with(const std::string& text, const std::string& start) {
 // Fields that hold the packing's stress as it is looked at first: no model, no other averaging.
 bool is_candidate(const std::string& name, const Field& field) {
   return (field.find("sigma_yy") != nullptr || field.find("sigma_zz") != nullptr) &&
-         field.attributes.count("method") > 0 && name != "base_unloaded" &&
-         !starts_with(name, "model_") && name.find("_unloaded") == std::string::npos &&
-         !starts_with(name, "particle_centre") && !starts_with(name, "area_exact");
+         field.has("method") && name != "base_unloaded" && !starts_with(name, "model_") &&
+         name.find("_unloaded") == std::string::npos && !starts_with(name, "particle_centre") &&
+         !starts_with(name, "area_exact");
 }
 
 std::vector<std::string> names_in(const CompareRequest& request) {
@@ -79,11 +77,11 @@ std::vector<std::string> chosen(const CompareRequest& request) {
   for (const auto& name : names_in(request)) {
     const Field field = field_in(request, name);
     if (!is_candidate(name, field)) continue;
-    if (is_heap_field(field)) {
+    if (field.is_of_heap()) {
       // The base of a pile's run is "base"; averages of the same place stand beside it.
       if (name.size() > 5 && name.compare(name.size() - 5, 5, "_base") == 0) continue;
       (field.nx == 0 ? heap_lines : heap_maps).push_back(name);
-    } else if (field.attributes.count("F") > 0) {
+    } else if (field.has("F")) {
       (field.nx == 0 ? lines : maps).push_back(name);
     } else {
       others.push_back(name);
@@ -106,28 +104,6 @@ std::vector<std::string> chosen(const CompareRequest& request) {
                               ": holds no averaged stress to compare (`grainfield average` and "
                               "`grainfield import-field` make "
                               "it)");
-}
-
-void require_same(const SceneField& first, const SceneField& next, const std::string& file) {
-  const auto refuse = [&](const std::string& what) {
-    throw std::invalid_argument(
-        fmt::format("{}: fields {} and {} differ in {}; compare one of them (--field)", file,
-                    first.name, next.name, what));
-  };
-  const auto differ = [](double a, double b) {
-    return std::isfinite(a) != std::isfinite(b) || std::fabs(a - b) > kSame * std::fabs(a);
-  };
-  if (first.scene != next.scene) refuse("what they show (load, heap, layer)");
-  if (differ(first.facts.force, next.facts.force)) {
-    refuse(fmt::format("F ({:g} and {:g} N)", first.facts.force, next.facts.force));
-  }
-  if (differ(first.facts.height, next.facts.height)) {
-    refuse(fmt::format("h ({:g} and {:g} m)", first.facts.height, next.facts.height));
-  }
-  if (first.field.realizations != next.field.realizations) {
-    refuse(
-        fmt::format("realizations ({} and {})", first.field.realizations, next.field.realizations));
-  }
 }
 
 // Whether the model has no answer without it: a weight may be 0 by default.
@@ -188,49 +164,33 @@ RunFacts facts_for(const ModelChoice& choice, const RunFacts& facts, bool flanks
   return out;
 }
 
-Comparison compared(const SceneField& scene, std::vector<Profile> profiles,
-                    std::vector<ModelProfiles> models) {
-  const double h = scene.facts.height;
-  const int n = scene.field.realizations;
-  const Scale scale =
-      scene.scene == Scene::response ? scale_of_load(scene.facts.force, h, scene.facts.dim)
-      : scene.scene == Scene::heap
-          ? scale_of_heaps(h, scene.unit, scaled_alone(n))
-          : Scale{h,     scene.unit, kNan,
-                  "N/m", "origin",   fmt::format("h = {:.6g} m; realizations: {}", h, n)};
-  return compare(std::move(profiles), std::move(models), scale, n);
-}
-
-void add_figures_of(const SceneField& scene, const Comparison& comparison, std::size_t main,
+void add_figures_of(const Observations& observed, const Comparison& comparison, std::size_t main,
                     Summary& summary) {
-  const double h = scene.facts.height;
-  if (scene.scene == Scene::response) {
-    summary["layer.depth"] = h;
-    summary[scene.facts.dim == 3 ? "layer.F_over_h2" : "layer.F_over_h"] = scene.unit;
-    add_comparison(summary, comparison, main);
+  add_compared(summary, observed, comparison, main);
+  const Scale& scale = observed.scale;
+  if (observed.specimen == Specimen::heap) {
+    summary["pile.height"] = scale.h;
+    summary["heap.rho_g_h"] = scale.unit;
     return;
   }
-  for (const auto& [key, figure] : summary_figures(comparison, main)) {
-    // The response.* keys speak of a load.
-    if (!starts_with(key, "response.")) summary[key] = figure;
-  }
-  if (scene.scene == Scene::heap) {
-    summary["pile.height"] = h;
-    summary["heap.rho_g_h"] = scene.unit;
-  } else {
-    summary["layer.depth"] = h;
+  summary["layer.depth"] = scale.h;
+  if (observed.specimen == Specimen::layer) {
+    summary[observed.told.dim == 3 ? "layer.F_over_h2" : "layer.F_over_h"] = scale.unit;
   }
 }
 
-Report page_of(const CompareRequest& request, const SceneField& scene, const Comparison& comparison,
-               const Field& map, const std::vector<ModelMap>& models, const ReportRows& made) {
+Report page_of(const CompareRequest& request, const Observations& observed,
+               const Comparison& comparison, const std::vector<SeenModel>& models,
+               const ReportRows& made) {
   const std::string title = "Comparison of " + request.file;
-  if (scene.scene == Scene::response) {
+  if (observed.specimen == Specimen::layer) {
     PointLoadReport page;
     page.title = title;
     page.comparison = comparison;
-    page.map = map;
-    page.models = models;
+    page.map = observed.map;
+    if (observed.map.nx > 0) {
+      for (const SeenModel& m : models) page.models.push_back({m.profiles.label, m.map.col(1)});
+    }
     page.made = made;
     return point_load_report(page);
   }
@@ -238,44 +198,17 @@ Report page_of(const CompareRequest& request, const SceneField& scene, const Com
   page.title = title;
   page.subtitle = comparison.scale.note;
   page.comparison = comparison;
-  page.map = map;
-  page.averaged = scene.seen;
+  page.map = observed.map;
+  page.averaged = observed.seen.front();
   page.made = made;
   return pile_report(page);
 }
 
-// Of the first `lines` sets those with few places again, through kDrawnPlaces: appended; their
-// numbers.
-std::vector<std::size_t> add_drawn_sets(std::size_t lines, std::vector<PointSet>& sets) {
-  std::vector<std::size_t> out;
-  for (std::size_t l = 0; l < lines; ++l) {
-    if (sets[l].points.rows() >= kFewPlaces) continue;
-    PointSet set = sets[l];
-    set.points = drawn_places(set.points);
-    sets.push_back(std::move(set));
-    out.push_back(l);
-  }
-  return out;
-}
-
-void add_drawn_lines(const std::vector<FieldLine>& lines, const std::vector<std::size_t>& drawn,
-                     std::size_t first, const std::vector<PointSet>& sets, const Evaluation& e,
-                     ModelProfiles& out) {
-  out.line_x.resize(lines.size());
-  out.line.resize(lines.size());
-  for (std::size_t k = 0; k < drawn.size(); ++k) {
-    const FieldLine& line = lines[drawn[k]];
-    out.line_x[drawn[k]] = sets[first + k].points.col(0);
-    out.line[drawn[k]] = line.sign * e.stresses[first + k].col(line.component);
-  }
-}
-
 // Returns a line for each share that measured values carry, and adds the doubts to the verdict.
-std::vector<std::string> carried_lines(const std::vector<SceneField>& scenes,
-                                       Judgement& judgement) {
+std::vector<std::string> carried_lines(const NamedFields& fields, Judgement& judgement) {
   std::vector<std::string> out;
-  for (const SceneField& scene : scenes) {
-    const auto share = carried_share(scene.field);
+  for (const auto& [name, field] : fields) {
+    const auto share = carried_share(field);
     if (!share) continue;
     out.push_back(share_text(*share));
     if (const std::string doubt = share_doubt(*share); !doubt.empty()) {
@@ -294,105 +227,53 @@ CompareOutcome compare_field(const CompareRequest& request) {
     results.emplace(request.folder, "grainfield compare " + request.file);
     if (request.held.empty()) results->require_other_than({request.file});
   }
-  std::vector<SceneField> scenes;
-  std::vector<FieldLine> lines;
-  Field map;
-  std::set<std::string> kernels;
-  std::vector<std::string> seen;
-  for (const auto& name : chosen(request)) {
-    const std::string where = request.file + ":" + name;
-    SceneField scene = scene_field(field_in(request, name), name, request.lines, where);
-    if (!scenes.empty()) require_same(scenes.front(), scene, request.file);
-    for (auto& line : lines_of(scene, request.lines, where)) lines.push_back(std::move(line));
-    if (scene.field.nx > 0 && scene.facts.dim == 2) map = scene.field;
-    kernels.insert(scene.seen);
-    seen.push_back(fmt::format("{}: {}", name, scene.seen));
-    scenes.push_back(std::move(scene));
-  }
-  const SceneField& scene = scenes.front();
-  const bool measured = scene.field.is_measured();
+  NamedFields fields;
+  for (const auto& name : chosen(request)) fields.emplace_back(name, field_in(request, name));
+  const Observations observed = observe_fields(fields, request.lines, request.file);
   CompareOutcome out;
-  RunFacts facts = scene.facts;
-  facts.depth = lines.front().profile.depth;
-  std::vector<PointSet> sets;
-  std::vector<Profile> profiles;
-  std::size_t main = lines.size() - 1;
-  const bool heap = scene.scene == Scene::heap;
-  for (std::size_t l = 0; l < lines.size(); ++l) {
-    const FieldLine& line = lines[l];
-    Eigen::MatrixXd points = line.points;
-    points.rightCols<1>().array() -= scene.apex;
-    sets.push_back(
-        {points, line.flat ? Smoothing::marginal : Smoothing::kernel, line.kernel.get(), heap});
-    facts.depth = std::min(facts.depth, line.profile.depth);
-    profiles.push_back(line.profile);
-    profiles.back().measured = measured;
-    if (line.flat) main = l;
+  out.measured = observed.measured;
+  std::size_t main = observed.lines.size() - 1;
+  for (std::size_t l = 0; l < observed.lines.size(); ++l) {
+    if (observed.lines[l].places.smoothing == Smoothing::marginal) main = l;
   }
-  const double spanned = heap && facts.height > 0 ? 1 + scene.apex / facts.height : 1;
-  if (heap) facts.depth = facts.height += scene.apex;
-  if (map.nx > 0) {
-    Eigen::MatrixXd points = map.points;
-    points.rightCols<1>().array() -= scene.apex;
-    sets.push_back({points, Smoothing::none, nullptr, heap});
-  }
-  const std::size_t first_drawn = sets.size();
-  const std::vector<std::size_t> drawn = add_drawn_sets(lines.size(), sets);
-
-  Summary summary;
-  std::vector<ModelProfiles> models;
-  std::vector<ModelMap> model_maps;
-  std::vector<std::string> names;
-  for (const auto& choice : choices) names.push_back(choice.name);
   require_different(choices);
-  const bool flanks_apart = takes_flanks_apart(names);
+  std::vector<std::string> names;
   for (const auto& choice : choices) {
-    require_known(choice, facts, request.file);
-    if (scene.scene != Scene::layer) {
-      require_subject({choice}, heap ? Subject::heap : Subject::load, facts.dim, "model");
-    }
-    const Evaluation e = evaluate_model(choice, facts_for(choice, facts, flanks_apart), sets);
-    ModelProfiles m{choice.label, model_label(choice), family_of(choice.name), {}};
-    for (std::size_t l = 0; l < lines.size(); ++l) {
-      m.values.emplace_back(lines[l].sign * e.stresses[l].col(lines[l].component));
-    }
-    add_drawn_lines(lines, drawn, first_drawn, sets, e, m);
-    models.push_back(std::move(m));
-    if (map.nx > 0) {
-      model_maps.push_back({model_label(choice), e.stresses[first_drawn - 1].col(1)});
-    }
-    summary["model." + choice.label + ".name"] = choice.name;
-    for (const auto& [key, figure] : over_grains_height(e.figures, spanned)) {
-      summary["model." + choice.label + "." + key] = figure;
-    }
+    names.push_back(choice.name);
+    require_known(choice, observed.told, request.file);
+    if (observed.specimen == Specimen::rest) continue;
+    require_subject({choice}, observed.specimen == Specimen::heap ? Subject::heap : Subject::load,
+                    observed.told.dim, "model");
   }
-  Comparison comparison = compared(scene, std::move(profiles), std::move(models));
-  if (scene.scene == Scene::response) comparison.judgement.noun = "layer";
-  if (heap) comparison.judgement.noun = facts.dim == 3 ? "cone" : "pile";
-  if (measured) out.carried = carried_lines(scenes, comparison.judgement);
-  if (const auto note = dem::added_forces_note(scene.field.attributes); !note.empty()) {
+  const bool flanks_apart = takes_flanks_apart(names);
+  const std::vector<SeenModel> models = see_models(
+      observed, choices, evaluate_model,
+      [&](const ModelChoice& choice) { return facts_for(choice, observed.told, flanks_apart); });
+  Summary summary;
+  for (const SeenModel& model : models) {
+    const std::string prefix = "model." + model.choice.label + ".";
+    summary[prefix + "name"] = model.choice.name;
+    for (const auto& [key, figure] : model.figures) summary[prefix + key] = figure;
+  }
+  Comparison comparison = compared(observed, models);
+  if (out.measured) out.carried = carried_lines(fields, comparison.judgement);
+  if (const std::string note = added_forces_note(fields.front().second); !note.empty()) {
     comparison.judgement.doubts.push_back(as_sentence(note));
   }
-  if (kernels.size() > 1) {
-    comparison.judgement.notes.push_back(
-        fmt::format("Fields are seen through different kernels, models through each one's own: {}.",
-                    fmt::join(seen, "; ")));
-  }
   summary["version"] = version_and_commit();
-  summary["ensemble.realizations"] = static_cast<std::int64_t>(scene.field.realizations);
-  add_figures_of(scene, comparison, main, summary);
+  summary["ensemble.realizations"] = static_cast<std::int64_t>(observed.realizations);
+  add_figures_of(observed, comparison, main, summary);
   add_judgement(summary, comparison.judgement);
   require_documented(summary);
 
-  out.measured = measured;
   if (results) {
     const ReportRows made{{"fields", request.file},
-                          {"seen through", fmt::format("{}", fmt::join(seen, "; "))},
+                          {"seen through", fmt::format("{}", fmt::join(observed.seen, "; "))},
                           {"version", version_and_commit()}};
     write_profiles(results->staging(), comparison);
     write_judgement(results->staging(), comparison.judgement);
     out.lacks = write_report(results->staging("report.html"),
-                             page_of(request, scene, comparison, map, model_maps, made))
+                             page_of(request, observed, comparison, models, made))
                     .complaint();
     write_summary(results->staging("summary.json"), summary);
     out.gone = told_of_gone(request.folder, results->publish());

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "coupling/compare/compare.h"
-#include "coupling/files/field_lines.h"
+#include "coupling/observe/lines.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/tables.h"
 

@@ -11,21 +11,21 @@
 #include "continuum/model.h"
 #include "coupling/case/apply.h"
 #include "coupling/case/shipped_cases.h"
+#include "coupling/files/added_forces.h"
 #include "coupling/files/average_files.h"
 #include "coupling/files/measured_field.h"
 #include "coupling/files/measured_share.h"
 #include "coupling/fit/coverage.h"
 #include "coupling/fit/fits.h"
 #include "coupling/fit/heap_result.h"
-#include "coupling/fit/setup.h"
 #include "coupling/models/parse_choices.h"
+#include "coupling/observe/setup.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/judgement.h"
 #include "coupling/output/output_folder.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/version.h"
-#include "dem/snapshot/added_forces_mark.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -77,9 +77,7 @@ std::vector<std::string> heap_fields(const std::string& file) {
   std::vector<std::string> out;
   for (const std::string& name : list_fields(file)) {
     const Field field = read_field(file, name);
-    const auto frame = field.attributes.find("frame");
-    if (frame == field.attributes.end() || frame->second.compare(0, 4, "heap") != 0) continue;
-    if (field.find("sigma_xx") == nullptr || field.attributes.count("method") == 0) continue;
+    if (!field.is_of_heap() || field.find("sigma_xx") == nullptr || !field.has("method")) continue;
     if (field.nx > 0) out.push_back(name);
   }
   return out.empty() ? list_fields(file) : out;
@@ -293,7 +291,7 @@ FitOutcome fit_files(const FitRequest& request) {
       take_what_was_measured(field, !request.case_file.empty(), overrides, value.get<FitSetup>());
     }
     data = observe_heap_field(value.get<FitSetup>(), field, out.packings.front());
-    if (const std::string note = dem::added_forces_note(field.attributes); !note.empty()) {
+    if (const std::string note = added_forces_note(field); !note.empty()) {
       data.warnings.push_back(fmt::format("{}: {}", out.packings.front(), note));
     }
     if (measured) {

@@ -10,7 +10,7 @@
 #include "coupling/field.h"
 #include "coupling/files/average_files.h"
 #include "coupling/fit/fits.h"
-#include "coupling/fit/setup.h"
+#include "coupling/observe/setup.h"
 #include "coupling/output/tables.h"
 
 namespace grainfield::coupling {

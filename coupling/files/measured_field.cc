@@ -14,7 +14,6 @@
 
 #include "continuum/model.h"
 #include "coupling/files/measured_share.h"
-#include "coupling/files/placement.h"
 #include "coupling/import/format.h"
 #include "coupling/import/synonyms.h"
 #include "coupling/unit.h"
@@ -272,7 +271,7 @@ const std::vector<std::string>& stress_units() {
 }
 
 std::string name_of_measured(const Field& field) {
-  const double h = dem::parse_number(field.attributes.at("h")).value();
+  const double h = field.number("h");
   const Eigen::VectorXd heights = field.points.col(field.points.cols() - 1);
   return (heights.array() + h).abs().maxCoeff() <= kSamePlace * h ? "base" : "measured";
 }
@@ -292,7 +291,7 @@ struct OffHeights {
 };
 
 OffHeights off_heights(const Field& field, const std::optional<MeasuredHeap>& heap) {
-  const double h = dem::parse_number(field.attributes.at("h")).value();
+  const double h = field.number("h");
   const Eigen::Index up = field.points.cols() - 1;
   OffHeights out;
   for (Eigen::Index k = 0; k < field.points.rows(); ++k) {
@@ -309,7 +308,7 @@ OffHeights off_heights(const Field& field, const std::optional<MeasuredHeap>& he
 
 std::string of_heights(const Field& field, const OffHeights& off, bool heap,
                        const char* allowed = "") {
-  const std::string h = field.attributes.at("h");
+  const double h = field.number("h");
   const Eigen::Index up = field.points.cols() - 1;
   const char axis = "xyz"[up];
   const char* where = "above the surface or below the base";
@@ -477,19 +476,19 @@ Field measured_field(const MeasuredRequest& given) {
   auto& about = out.attributes;
   about["method"] = "measured";
   about["kernel"] = "heaviside";
-  about["width"] = fmt::format("{}", request.width > 0 ? request.width : kSmallWidth * h);
-  about["h"] = fmt::format("{}", h);
+  about["width"] = request.width > 0 ? request.width : kSmallWidth * h;
+  about["h"] = h;
   about["measured_file"] = request.file;
+  about["frame"] = request.geometry;
   if (request.geometry == "layer") {
-    about["frame"] = frame_text("layer", request.dim);
-    if (!std::isnan(request.load)) about["F"] = fmt::format("{}", request.load);
+    if (!std::isnan(request.load)) about["F"] = request.load;
     refuse_heights(out, std::nullopt);
     return out;
   }
-  about["frame"] = fmt::format("heap: apex at (0, 0), floor {} = -h", space ? "z" : "y");
-  about["rho_g_h"] = fmt::format("{}", request.rho_g * h);
-  about["left_deg"] = fmt::format("{}", request.left_deg);
-  about["right_deg"] = fmt::format("{}", request.right_deg);
+  about["lengths"] = "m";
+  about["rho_g_h"] = request.rho_g * h;
+  about["left_deg"] = request.left_deg;
+  about["right_deg"] = request.right_deg;
   refuse_impossible(out);
   return out;
 }

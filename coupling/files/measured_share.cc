@@ -19,12 +19,6 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSameLevel = 1e-6;  // of h
 constexpr std::size_t kLeastPlaces = 5;
 
-double attribute(const Field& field, const std::string& name) {
-  const auto at = field.attributes.find(name);
-  if (at == field.attributes.end()) return kUnknown;
-  return dem::parse_number(at->second).value_or(kUnknown);
-}
-
 // Places, pressures and errors of one level, from left to right; in space by the distance from the
 // axis, means over places of one distance.
 std::vector<LevelPressure> pressures_at(const Field& field, double height, double tolerance) {
@@ -123,12 +117,12 @@ std::optional<CarriedShare> share_of_weight(const Field& field, const MeasuredHe
   const bool space = heap.dim == 3;
   const double weight =
       space ? heap.weight_within(base.back().x) : heap.weight_above(base.front().x, base.back().x);
-  const double pressure = attribute(field, "rho_g_h");
+  const double pressure = field.number("rho_g_h");
   CarriedShare out = share_of(base, heap.dim, weight, [&](double x) {
     return pressure * std::max(0.0, 1 - (x < 0 ? -x / heap.left : x / heap.right));
   });
   out.carried = "the weight above them";
-  out.instead = "--rho-g " + four_digits(out.share * pressure / attribute(field, "h"));
+  out.instead = "--rho-g " + four_digits(out.share * pressure / field.number("h"));
   return out;
 }
 
@@ -183,8 +177,8 @@ double MeasuredHeap::weight_within(double radius) const {
 
 std::optional<MeasuredHeap> measured_heap(const Field& field) {
   const auto dim = static_cast<int>(field.points.cols());
-  const double h = attribute(field, "h"), pressure = attribute(field, "rho_g_h");
-  const double left_deg = attribute(field, "left_deg"), right_deg = attribute(field, "right_deg");
+  const double h = field.number("h"), pressure = field.number("rho_g_h");
+  const double left_deg = field.number("left_deg"), right_deg = field.number("right_deg");
   if (!(left_deg > 0) || !(right_deg > 0) || !(pressure > 0) ||
       field.find(dim == 3 ? "sigma_zz" : "sigma_yy") == nullptr) {
     return std::nullopt;
@@ -197,7 +191,7 @@ std::optional<MeasuredHeap> measured_heap(const Field& field) {
 }
 
 std::vector<LevelPressure> base_pressures(const Field& field, const MeasuredHeap& heap) {
-  const double h = attribute(field, "h");
+  const double h = field.number("h");
   std::vector<LevelPressure> out = pressures_at(field, -h, kSameLevel * h);
   const double left = heap.dim == 3 ? 0 : -heap.left;
   std::erase_if(out, [&](const LevelPressure& p) { return p.x < left || p.x > heap.right; });
@@ -206,7 +200,7 @@ std::vector<LevelPressure> base_pressures(const Field& field, const MeasuredHeap
 
 std::optional<CarriedShare> carried_share(const Field& field) {
   if (const auto heap = measured_heap(field)) return share_of_weight(field, *heap);
-  const double load = attribute(field, "F"), h = attribute(field, "h");
+  const double load = field.number("F"), h = field.number("h");
   if (!(load > 0) || !(h > 0)) return std::nullopt;
   return share_of_load(field, load, h);
 }

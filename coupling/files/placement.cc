@@ -67,18 +67,6 @@ void require_frame(const std::string& frame) {
     throw std::invalid_argument(unknown_name("frame", frame, kFrames));
 }
 
-std::string frame_text(const std::string& frame, int dim, bool rings) {
-  if (dim == 3) {
-    const std::string of_rings = rings ? ", rings: radius, height" : "";
-    if (frame == "layer") return "models: load at (0, 0, 0), surface z = 0" + of_rings;
-    if (frame == "heap") return "heap: apex at (0, 0, 0), lengths over its height h" + of_rings;
-    return "packing" + of_rings;
-  }
-  if (frame == "layer") return "models: load at (0, 0), surface y = 0";
-  if (frame == "heap") return "heap: apex at (0, 0), lengths over its height h";
-  return "packing";
-}
-
 Placement place(const dem::Snapshot& s, const std::string& frame, std::int64_t loaded_grain) {
   if (s.dim == 3) return place_in_space(s, frame, loaded_grain);
   const LayerFrame layer = layer_frame(s, loaded_grain);

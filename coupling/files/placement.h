@@ -21,8 +21,6 @@ struct Placement {
 
 /// Throws std::invalid_argument with the nearest name unless it is layer, heap or packing.
 void require_frame(const std::string& frame);
-/// For people and for compare: what the coordinates of a field in this frame are.
-std::string frame_text(const std::string& frame, int dim = 2, bool rings = false);
 
 /// `loaded_grain`: id of the grain below which x = 0 (in space also y = 0) lies in frame "layer";
 /// -1: the snapshot's own, or without one the middle. Of spheres: layer.h and cone.h. Throws

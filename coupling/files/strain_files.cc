@@ -72,9 +72,9 @@ StrainOutcome strain_files(const StrainRequest& request) {
   out.field.nz = grid ? nz : 0;
   out.field.attributes["measure"] = options.measure;
   out.field.attributes["support"] = options.support;
-  out.field.attributes["width"] = fmt::format("{}", options.width);
-  out.field.attributes["h"] = fmt::format("{}", placed.depth);
-  out.field.attributes["frame"] = frame_text(request.frame, before.dim);
+  out.field.attributes["width"] = options.width;
+  out.field.attributes["h"] = placed.depth;
+  out.field.attributes["frame"] = request.frame;
   return out;
 }
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "coupling/fit/data.h"
 #include "coupling/fit/model.h"
 #include "coupling/fit/weights.h"
+#include "coupling/observe/data.h"
 
 namespace grainfield::coupling {
 

@@ -11,9 +11,9 @@
 #include "continuum/constants.h"
 #include "coupling/fit/derived.h"
 #include "coupling/fit/fit_tables.h"
-#include "coupling/fit/heap_rows.h"
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/posteriors.h"
+#include "coupling/observe/heap_rows.h"
 #include "coupling/output/judgement.h"
 #include "coupling/output/text_table.h"
 #include "coupling/report/judgement.h"
@@ -341,7 +341,7 @@ std::vector<Section> fit_pictures(const EnsembleFits& fits) {
                    "Loaded less unloaded, h = {:.4g} m, F = {:.4g} N. The models have their fitted "
                    "constants and are smoothed with the kernel of the averaging; finite elements "
                    "lie on their closed forms (table below).",
-                   seen.height, seen.unit * seen.height);
+                   seen.scale.h, seen.scale.unit * seen.scale.h);
     picture.caption +=
         fmt::format(" The grey band is one standard error on either side. {}.", weights_note(fits));
     out.emplace_back(std::move(picture));

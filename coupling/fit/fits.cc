@@ -12,12 +12,12 @@
 #include "coupling/compare/smooth.h"
 #include "coupling/fit/derived.h"
 #include "coupling/fit/fit_tables.h"
-#include "coupling/fit/heap_rows.h"
 #include "coupling/fit/intervals.h"
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/models.h"
 #include "coupling/fit/open_models.h"
 #include "coupling/judge/words.h"
+#include "coupling/observe/heap_rows.h"
 #include "coupling/statistics/spread.h"
 
 namespace grainfield::coupling {
@@ -67,11 +67,11 @@ HeapFacts facts_of_part(const FitSetup& setup, const HeapFacts& all,
 std::vector<FitModel> models_of(const FitSetup& setup, const Observations& heaps) {
   const auto sight = heap_sight(places_of(heaps.data), heaps);
   std::vector<FitModel> out;
-  for (const RegistryEntry& entry : heap_entries_of(setup.models, heaps.facts, heaps.height)) {
+  for (const RegistryEntry& entry : heap_entries_of(setup.models, heaps.facts, heaps.scale.h)) {
     out.push_back(seen_entry(entry, heaps.facts, sight));
   }
   if (heaps.frames.size() < 2 || setup.left_deg > 0 || setup.right_deg > 0) return out;
-  const auto of_part = [setup, sight, frames = heaps.frames, all = heaps.facts, h = heaps.height](
+  const auto of_part = [setup, sight, frames = heaps.frames, all = heaps.facts, h = heaps.scale.h](
                            std::size_t model, const std::vector<int>& chosen) {
     std::vector<PileFrame> part;
     for (const int k : chosen) part.push_back(frames[static_cast<std::size_t>(k)]);
@@ -194,7 +194,7 @@ EnsembleFits fit_layers(const VerdictSetup& setup, Observations layers, int thre
   options.threads = threads;
   const auto seen = std::make_shared<const LayerSight>(places_of(data), *out.observed.kernel);
   out.asked = setup.models;
-  fit_all(models_of_layers(out.asked, seen, out.observed.height), options, out);
+  fit_all(models_of_layers(out.asked, seen, out.observed.scale.h), options, out);
   out.judgement.noun = "layer";
   out.elements =
       solve_elements(setup.finite_elements, out.models, out.fits, data, out.weights,
@@ -211,11 +211,11 @@ std::vector<Eigen::MatrixXd> models_at(const EnsembleFits& fits,
   std::vector<FitModel> models;
   if (observed.specimen == Specimen::layer) {
     models = models_of_layers(
-        fits.asked, std::make_shared<const LayerSight>(points, *observed.kernel), observed.height);
+        fits.asked, std::make_shared<const LayerSight>(points, *observed.kernel), observed.scale.h);
   } else {
     const auto sight = heap_sight(points, observed);
     for (const RegistryEntry& entry :
-         heap_entries_of(fits.asked, observed.facts, observed.height)) {
+         heap_entries_of(fits.asked, observed.facts, observed.scale.h)) {
       models.push_back(seen_entry(entry, observed.facts, sight));
     }
   }
@@ -245,7 +245,7 @@ Eigen::MatrixXd model_on_maps(const EnsembleFits& fits, const std::string& name)
 
 Comparison profiles_of(const EnsembleFits& fits) {
   const FitData& data = fits.observed.data;
-  const double h = fits.observed.height, unit = fits.observed.unit;
+  const double h = fits.observed.scale.h, unit = fits.observed.scale.unit;
   std::vector<Profile> profiles;
   std::vector<ModelProfiles> models;
   for (const FitModel& m : fits.models) models.push_back({m.name, m.label, m.name, {}});
@@ -286,8 +286,7 @@ Comparison profiles_of(const EnsembleFits& fits) {
     }
   }
   Comparison out =
-      compare(std::move(profiles), std::move(models),
-              scale_of_heaps(h, unit, scaled_alone(data.realizations())), data.realizations());
+      compare(std::move(profiles), std::move(models), fits.observed.scale, data.realizations());
   out.judgement = fits.judgement;
   return out;
 }

@@ -23,8 +23,8 @@
 #include "coupling/compare/compare.h"
 #include "coupling/fit/finite_elements.h"
 #include "coupling/fit/layer_sight.h"
-#include "coupling/fit/observations.h"
 #include "coupling/fit/selection.h"
+#include "coupling/observe/observations.h"
 
 namespace grainfield::coupling {
 

@@ -5,8 +5,8 @@
 
 #include "coupling/fit/fit_report.h"
 #include "coupling/fit/fit_tables.h"
-#include "coupling/fit/setup.h"
 #include "coupling/judge/judge.h"
+#include "coupling/observe/setup.h"
 #include "coupling/report/judgement.h"
 
 namespace grainfield::coupling {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "coupling/fit/fits.h"
-#include "coupling/fit/observations.h"
+#include "coupling/observe/observations.h"
 #include "coupling/run/study_result.h"
 
 namespace grainfield::coupling {

@@ -6,8 +6,8 @@
 
 #include "continuum/closed/orthotropic_layer.h"
 #include "coupling/averaging/kernel.h"
-#include "coupling/fit/data.h"
 #include "coupling/models/observation_operator.h"
+#include "coupling/observe/data.h"
 
 namespace grainfield::coupling {
 

@@ -9,8 +9,8 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "coupling/fit/data.h"
 #include "coupling/judge/judgement.h"
+#include "coupling/observe/data.h"
 
 namespace grainfield::coupling {
 

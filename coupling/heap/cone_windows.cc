@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "continuum/constants.h"
+#include "coupling/averaging/base.h"
 #include "coupling/averaging/base_space.h"
 
 namespace grainfield::coupling {

@@ -24,7 +24,7 @@ std::string few_realizations(int n) {
 BaseWindows base_windows(const dem::Snapshot& pile, const PileFrame& frame,
                          const HeapSetup& setup) {
   double centre = 0, shoulder = 0;
-  for (const BaseContact& f : base_contacts(pile)) {
+  for (const BaseSupport& f : base_supports(pile)) {
     const double at = std::fabs(frame.in_half_bases(f.point.x()));
     if (at < setup.centre) centre += f.force.y();
     if (at >= setup.shoulder_from && at < setup.shoulder_to) shoulder += f.force.y();

@@ -1,10 +1,11 @@
-// The attributes of a field in the heaps' frame (average_files.h, pile.cc), read back.
+// What a field in the heaps' frame says of its heaps.
 #pragma once
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "coupling/field.h"
+#include "coupling/heap/pile_frame.h"
 
 namespace grainfield::coupling {
 
@@ -23,14 +24,13 @@ struct HeapFieldFacts {
   std::vector<double> height;               ///< h, m
   std::vector<double> pressure;             ///< rho g h, N/m: what to divide values by
   std::vector<double> left_deg, right_deg;  ///< slopes, of cones repose_deg both; nan: not known
-  bool in_metres = false;                   ///< points in m; else over h
 
   double mean_height() const;
   double mean_pressure() const;
 };
 
-/// Whether the field is in the heaps' frame: apex at (0, 0), over h or in m.
-bool is_heap_field(const Field& field);
+/// Height, pressure and slopes of every heap, as attributes.
+void say_heaps(const std::vector<PileFrame>& heaps, Field& field);
 
 /// `count`: realizations whose values are used; 1: the mean. Throws std::invalid_argument beginning
 /// with `where` for another frame, missing attributes or numbers that do not fit.
@@ -45,9 +45,9 @@ Field in_mean_heap(Field field, const std::string& where);
 /// nothing.
 void require_compression(const Field& field, const std::string& where);
 
-/// The attribute; throws std::invalid_argument beginning with `where` where it is missing.
-std::string field_attribute(const Field& field, const std::string& name, const std::string& where);
-/// The same as a number; throws likewise when it is none.
+/// The attribute that is a text, or a number; throws std::invalid_argument beginning with `where`
+/// where it is missing or of another kind.
+std::string field_word(const Field& field, const std::string& name, const std::string& where);
 double field_number(const Field& field, const std::string& name, const std::string& where);
 
 }  // namespace grainfield::coupling

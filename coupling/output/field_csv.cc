@@ -10,32 +10,29 @@
 namespace grainfield::coupling {
 namespace {
 
-bool on_rings(const Field& field) {
-  const auto frame = field.attributes.find("frame");
-  return frame != field.attributes.end() && frame->second.find("rings") != std::string::npos;
-}
-
-// Lengths of a heap's frame are over its height.
-bool over_height(const Field& field) {
-  const auto frame = field.attributes.find("frame");
-  return frame != field.attributes.end() &&
-         frame->second.find("lengths over its height") != std::string::npos;
+// The axes of the points for people.
+std::string frame_words(const Field& field) {
+  const std::string frame = field.word("frame");
+  const bool space = field.points.cols() == 3;
+  const std::string origin = space || field.is_of_rings() ? "(0, 0, 0)" : "(0, 0)";
+  const char* up = origin.size() > 6 ? "z" : "y";
+  std::string out = frame;
+  if (frame == "layer") out += fmt::format(": load at {}, surface {} = 0", origin, up);
+  if (frame == "heap") {
+    out += fmt::format(
+        ": apex at {}, {}", origin,
+        field.is_over_height() ? "lengths over its height h" : fmt::format("floor {} = -h", up));
+  }
+  return field.is_of_rings() ? out + ", rings: radius, height" : out;
 }
 
 // A comment: the frame of the points, how the values were averaged, over how many realizations.
 std::string origin_of(const Field& field) {
-  const auto told = [&](const char* name) {
-    const auto at = field.attributes.find(name);
-    return at == field.attributes.end() ? std::string() : at->second;
-  };
-  if (told("frame").empty()) return "";
-  // The option's word for the models' frame.
-  const std::string models = "models:", frame = told("frame");
-  std::string out =
-      "# frame " + (frame.starts_with(models) ? "layer:" + frame.substr(models.size()) : frame);
-  if (!told("method").empty()) out += "; " + told("method");
-  if (!told("kernel").empty()) out += ", kernel " + told("kernel");
-  if (!told("width").empty()) out += ", width " + told("width") + " m";
+  if (field.word("frame").empty()) return "";
+  std::string out = "# frame " + frame_words(field);
+  if (field.has("method")) out += "; " + field.word("method");
+  if (field.has("kernel")) out += ", kernel " + field.word("kernel");
+  if (field.has("width")) out += fmt::format(", width {} m", field.number("width"));
   return fmt::format("{}; {} realization{}; stresses tension positive\n", out, field.realizations,
                      field.realizations == 1 ? "" : "s");
 }
@@ -49,11 +46,11 @@ bool has_error(const Field& field, const Column& column) {
 
 std::string field_csv(const Field& field) {
   // As import-field reads them: the unit in brackets behind the name.
-  const std::string length = over_height(field) ? "h" : "m";
+  const std::string length = field.is_over_height() ? "h" : "m";
   std::string out = origin_of(field);
   std::string names;
   for (const char axis : std::string(field.points.cols() == 3 ? "xyz"
-                                     : on_rings(field)        ? "rz"
+                                     : field.is_of_rings()    ? "rz"
                                                               : "xy")) {
     names += fmt::format("{}{} ({})", names.empty() ? "" : ",", axis, length);
   }

@@ -5,15 +5,14 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/field_attributes.h"
 #include "coupling/output/xdmf.h"
 #include "coupling/unknown_name.h"
 #include "coupling/version.h"
@@ -25,8 +24,7 @@ namespace {
 
 namespace h5 = dem::hdf5;
 constexpr std::size_t kMostListed = 30;  // names in a message
-constexpr const char* format_version = "1";
-const std::string user_attribute = "attribute.";  // prefix of Field::attributes in the file
+constexpr const char* format_version = "2";
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -43,6 +41,8 @@ void check_name(const std::string& name) {
 void check(const NamedFields& fields) {
   for (const auto& [name, field] : fields) {
     check_name(name);
+    for (const auto& [key, value] : field.attributes)
+      if (std::holds_alternative<std::vector<double>>(value)) check_name(key);
     const auto n = field.points.rows();
     // As numbers that do not overflow: three integers of a file may.
     const double places = static_cast<double>(field.nx) * field.ny * std::max(field.nz, 1);
@@ -97,36 +97,20 @@ Eigen::VectorXd to_eigen(const std::vector<double>& v) {
   return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
 
-// A number that a text says in full, so that reading gives the same text again.
-std::optional<double> number_in(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if (!std::isfinite(value) || fmt::format("{}", value) != text) return std::nullopt;
-  return value;
-}
-
 void write_one(hid_t root, const std::string& name, const Field& field) {
   const h5::Handle group = h5::create_group(root, name);
   const int dim = static_cast<int>(field.points.cols());
   std::vector<double> points;
   for (Eigen::Index p = 0; p < field.points.rows(); ++p)
     for (int d = 0; d < dim; ++d) points.push_back(field.points(p, d));
-  const auto frame = field.attributes.find("frame");
-  const bool scaled = frame != field.attributes.end() &&
-                      frame->second.find("lengths over its height h") != std::string::npos;
-  h5::write(group, "points", points, dim, scaled ? "h" : "m");
+  h5::write(group, "points", points, dim, field.is_over_height() ? "h" : "m");
   h5::write_attribute(group, "kind", "field");
   h5::write_attribute(group, "dim", dim);
   h5::write_attribute(group, "nx", field.nx);
   h5::write_attribute(group, "ny", field.ny);
   if (field.nz > 0) h5::write_attribute(group, "nz", field.nz);
   h5::write_attribute(group, "realizations", field.realizations);
-  for (const auto& [key, value] : field.attributes)
-    if (const std::optional<double> number = number_in(value))
-      h5::write_attribute(group, user_attribute + key, *number);
-    else
-      h5::write_attribute(group, user_attribute + key, value);
+  write_attributes(group, field);
   std::vector<std::string> names;
   const h5::Handle values = h5::create_group(group, "value");
   const h5::Handle errors = h5::create_group(group, "error");
@@ -220,13 +204,7 @@ Field read_field(const std::string& file, const std::string& name) {
   field.ny = number_of(group, "ny", 0, where);
   if (h5::has_attribute(group, "nz")) field.nz = number_of(group, "nz", 0, where);
   field.realizations = number_of(group, "realizations", 1, where);
-  for (const std::string& key : h5::text_attributes(group))
-    if (key.starts_with(user_attribute))
-      field.attributes[key.substr(user_attribute.size())] = h5::read_text_attribute(group, key);
-  for (const std::string& key : h5::number_attributes(group))
-    if (key.starts_with(user_attribute))
-      field.attributes[key.substr(user_attribute.size())] =
-          fmt::format("{}", h5::read_number_attribute(group, key));
+  field.attributes = read_attributes(group, where);
   const h5::Handle values = h5::open_group(group, "value");
   const h5::Handle errors = h5::open_group(group, "error");
   std::istringstream names(h5::read_text_attribute(group, "columns"));

@@ -17,6 +17,9 @@ void write_fields(const std::string& file, const NamedFields& fields);
 /// Throws std::invalid_argument, one line: file missing, not HDF5 or truncated, no such field
 /// (lists those there), column broken.
 Field read_field(const std::string& file, const std::string& name);
+/// Numbers that are texts ("0.3", "31.2,30.7") become numbers, and a frame in words its name: files
+/// of format 1, h5py and Python have them.
+void type_attributes(Attributes& attributes);
 /// Names of the fields of the file. Throws as read_field.
 std::vector<std::string> list_fields(const std::string& file);
 

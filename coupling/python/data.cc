@@ -298,7 +298,7 @@ const coupling::Column& column_in(const HeldField& self, const std::string& name
 
 HeldField field_of(const py::array& points, const std::vector<py::tuple>& columns,
                    const std::array<int, 3>& shape, int realizations,
-                   const std::map<std::string, std::string>& attributes) {
+                   const coupling::Attributes& attributes) {
   Field field;
   field.points = matrix_of(points, "points");
   field.nx = shape[0];
@@ -310,6 +310,7 @@ HeldField field_of(const py::array& points, const std::vector<py::tuple>& column
         fmt::format("shape: found {} places for {} points", cells, field.points.rows()));
   field.realizations = realizations;
   field.attributes = attributes;
+  coupling::type_attributes(field.attributes);
   for (const py::tuple& given : columns) {
     const auto name = given[0].cast<std::string>();
     coupling::Column& column = field.add(name, given[1].cast<std::string>());
@@ -376,6 +377,7 @@ void add_field(py::module_& module) {
            })
       .def("realizations", [](const HeldField& f) { return f.field->realizations; })
       .def("attributes", [](const HeldField& f) { return f.field->attributes; })
+      .def("is_over_height", [](const HeldField& f) { return f.field->is_over_height(); })
       .def("units",
            [](const HeldField& f) {
              py::dict out;

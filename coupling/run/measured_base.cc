@@ -9,7 +9,6 @@
 
 #include "coupling/case/declare.h"
 #include "coupling/output/field_io.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -26,15 +25,12 @@ constexpr double kOnBase = 1e-5;
 constexpr Eigen::Index kFewestPlaces = 5;
 
 double attribute(const Field& field, const char* key, const std::string& file) {
-  const auto at = field.attributes.find(key);
-  const auto number = at == field.attributes.end() ? std::nullopt : dem::parse_number(at->second);
-  if (!number) {
-    throw std::invalid_argument(fmt::format(
-        "measured.field: {} has no {} of a heap; found {}, expected a field of `grainfield "
-        "import-field` with --height and --slope",
-        file, key, at == field.attributes.end() ? "none" : "\"" + at->second + "\""));
-  }
-  return *number;
+  const double number = field.number(key);
+  if (std::isfinite(number)) return number;
+  throw std::invalid_argument(fmt::format(
+      "measured.field: {} has no {} of a heap; found {}, expected a field of `grainfield "
+      "import-field` with --height and --slope",
+      file, key, field.has(key) ? "\"" + attribute_text(field.attributes.at(key)) + "\"" : "none"));
 }
 
 double largest(const Eigen::VectorXd& v) { return v.cwiseAbs().maxCoeff(); }

@@ -157,7 +157,7 @@ StrainResult strain(const dem::Snapshot& before, const dem::Snapshot& after,
   result.field.attributes = {{"what", "displacement gradient, after - before"},
                              {"measure", entry.name},
                              {"support", options.support},
-                             {"width", fmt::format("{} m", options.width)},
+                             {"width", options.width},
                              {"sign", "extension positive"}};
   for (Eigen::Index p = 0; p < n; ++p) {
     if (verdicts[static_cast<std::size_t>(p)] == Verdict::too_few) result.too_few.push_back(p);

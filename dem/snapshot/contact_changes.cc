@@ -49,7 +49,7 @@ Vec3 base_force(const Snapshot& s) {
   Vec3 sum(0, 0, 0);
   for (const Contact& c : s.contacts) {
     if (c.j < 0) {
-      if (s.walls[-1 - c.j].name == "floor") sum += c.force;
+      if (!s.grains[c.i].fixed && s.walls[-1 - c.j].name == "floor") sum += c.force;
     } else if (s.grains[c.i].fixed != s.grains[c.j].fixed) {
       sum += s.grains[c.i].fixed ? Vec3(-c.force) : c.force;
     }

@@ -14,8 +14,8 @@ struct ContactChanges {
 /// Compares two states of the same grains; throws std::invalid_argument when they are not.
 ContactChanges compare_contacts(const Snapshot& before, const Snapshot& after);
 
-/// Force of the grains on the base (flat floor and fixed grains), N, as the base feels it with the
-/// sign turned: y > 0 is the load it carries.
+/// Force of the base (walls named "floor", fixed grains) on the free grains, N: its upward part, y
+/// in the plane and z in space, is the load that the base carries.
 Vec3 base_force(const Snapshot& snapshot);
 
 }  // namespace grainfield::dem

@@ -10,6 +10,9 @@ and KEY.most.NAME, as in the summary of a sweep. The recorded states add ADDED:
     q_over_p_at_0.04, pressure_at_0.04 (Pa): axial_q_over_p and p of a compression at a strain of 0.04
     shear_stiffness.PART: of a NAME that begins with shear_, the slope of |sigma_xz| over the shear,
         divided by the first mean stress; PART names an interval of shears in PARTS
+    strain_slope.PART: of the RVEs of radius RVE, the axial strain of a compression (the shear strain of
+        a NAME that begins with shear_) over the imposed one by least squares, while it is loaded;
+        PART is "early" up to an imposed strain of SET, else "late"
 
 Ends with 2 if no run of the list has ended. Needs numpy.
 """
@@ -29,13 +32,15 @@ from next import fail, read_list  # noqa: E402
 from record import write_file  # noqa: E402
 
 PARTS = {"first": (0.0, 0.04), "middle": (0.08, 0.12), "last": (0.14, 0.20)}
+RVE, SET = 5, 0.02
 #: The keys that this script adds to those of a summary.
-ADDED = ("q_over_p_at_0.04", "pressure_at_0.04", *(f"shear_stiffness.{part}" for part in PARTS))
+ADDED = ("q_over_p_at_0.04", "pressure_at_0.04", *(f"shear_stiffness.{part}" for part in PARTS),
+         "strain_slope.early", "strain_slope.late")
 TOLERANCE = 1e-3  # of the strain at which a state is recorded
 
 
-def read_states(file):
-    """The columns of NAME.states_of_realizations.csv as arrays."""
+def read_columns(file):
+    """The columns of a CSV of a run as arrays, nan where a value is missing."""
     lines = [line for line in file.read_text().splitlines() if not line.startswith("#")]
     rows = list(csv.DictReader(lines))
     return {name.removesuffix("_Pa"): numpy.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
@@ -61,18 +66,32 @@ def shear_figures(states):
     return out
 
 
-def figures_of(name, record, states):
+def strain_slopes(rves, component):
+    """Slopes of the RVEs' strain over the imposed one, early and late."""
+    of = rves["radius"] == RVE
+    imposed, found = (abs(rves[f"{kind}_{component}"][of]) for kind in ("imposed", "strain"))
+    loading = numpy.arange(len(imposed)) <= numpy.argmax(imposed)
+    out = {}
+    for part, within in {"early": imposed <= SET + TOLERANCE, "late": imposed >= SET - TOLERANCE}.items():
+        if (within & loading).sum() > 1:
+            out[f"strain_slope.{part}"] = numpy.polyfit(imposed[within & loading], found[within & loading], 1)[0]
+    return out
+
+
+def figures_of(name, record, states, rves):
     """The finite numbers of a run by key."""
     numbers = {key: value for key, value in record["summary"].items() if isinstance(value, (int, float))
                and not key.startswith(("ensemble.", "time.", "memory."))}
     numbers["time.cpu_s"] = record["cpu_seconds"]
     if states is not None:
         numbers |= shear_figures(states) if name.startswith("shear_") else compression_figures(states)
+    if rves is not None:
+        numbers |= strain_slopes(rves, "xz" if name.startswith("shear_") else "zz")
     return {key: float(value) for key, value in numbers.items() if math.isfinite(value)}
 
 
 def collect(runs):
-    """The joined summary of [(name, record, states or None)]."""
+    """The joined summary of [(name, record, states or None, RVEs or None)]."""
     out = {}
     for name in {name for name, *_ in runs}:
         of = [figures_of(*run) for run in runs if run[0] == name]
@@ -95,10 +114,11 @@ def main():
     tag, planned = read_list(listed)
     folder, runs, cases = HERE / "states" / listed.stem, [], set()
     for name, _, case, _ in planned:
-        file, states = folder / f"{name}.json", folder / f"{name}.states_of_realizations.csv"
+        file = folder / f"{name}.json"
         if file.exists():
+            tables = (folder / f"{name}.{table}.csv" for table in ("states_of_realizations", "rve"))
             runs.append((name.rpartition("-")[0], json.loads(file.read_text()),
-                         read_states(states) if states.exists() else None))
+                         *(read_columns(table) if table.exists() else None for table in tables)))
             cases.add(case)
     if len(cases) != 1:
         fail(f"{listed}: found finished runs of {len(cases)} cases; allowed: one case")

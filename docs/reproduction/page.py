@@ -40,11 +40,13 @@ result" means not run or not measured; the row says which.
 
 **How agreement is judged**
 
-- **Errors** are standard errors over realizations.
-- **Numbers.** A number agrees when the band and ours ± 2 standard errors overlap. The band is the source's value
-  with its reading error: 1° for angles, 0.01 for fractions, 25 % where the source says "about".
-- **Spread too wide to tell**: 2 standard errors exceed {100 * TOO_WIDE:.0f} % of the value. For the ratios of volume
-  fraction and coordination, the effect that the source reports replaces the value (0.09, 0.08, 0.04).
+- **Errors** are standard errors over realizations. Intervals have a probability of 95 % by Student's t. Eight
+  realizations give 2.4 standard errors, three give 4.3 and two give 12.7.
+- **Numbers.** A number agrees when ours lies in the band, and differs when our whole interval lies outside. The band
+  is the source's value with its reading error: 1° for angles, 0.01 for fractions, 25 % where the source says "about".
+- **Spread too wide to tell**: ours lies outside the band and our interval reaches into it, or ours lies inside, our
+  interval reaches out of it, and its half exceeds {100 * TOO_WIDE:.0f} % of the source's value. For the ratios of volume fraction and coordination, the effect that the source reports replaces the value
+  (0.09, 0.08, 0.04).
 - **Recorded strains.** Some strains are known only to the distance of the recorded states. A miss within half of
   this distance cannot tell.
 - **Dips and peaks** are significant at 5 % over [all pours together](#dips-and-peaks-of-all-pours). A peak also
@@ -55,8 +57,9 @@ result" means not run or not measured; the row says which.
 - **Fitted constants** have the larger of two errors, the fit's own and the bootstrap's over piles. The fit's own is
   the jackknife's; with the other weights it is the covariance's.
 - **Ratios of two ensembles** have the error of the one minus the source's ratio times the other.
-- **"Hardly changes"** means by less than a tenth, also with 2 standard errors more. "Changes" means by more than a
-  tenth, also with 2 standard errors less. Between them the spread is too wide to tell.
+- **"Hardly changes"** means by less than a tenth in our whole interval. "Changes" means by more than a tenth in our
+  whole interval. Between them the spread is too wide to tell. "Negligible" means less than a tenth of the
+  effect of μ, likewise.
 - **The steeper flank** is the flank with the larger mean, on whichever side. The study's page says which side was
   meant.
 - **Nothing was tuned to agree**, with one exception: the window of Liffman's H at 32.6° was chosen after the piles
@@ -110,10 +113,8 @@ def figure_line(row: Row, results: Results) -> tuple[str, str]:
     """A line of a table, and its agreement."""
     ours, said = judged(row, results)
     study, lacking = row["study"], said == ""
-    count = "ensemble.realizations." + row.get("member", row.get("to", ""))  # those of the row's value of a sweep
-    if results.plain(study, count) is None:
-        count = "ensemble.realizations"
-    realizations = "" if lacking else number(results, study, count, "g")
+    count = None if lacking else results.realizations(study, row.get("member", row.get("to", "")))
+    realizations = "" if count is None or math.isnan(count) else f"{count:g}"
     cells = [row["source"], row["what"], with_unit(row["theirs"], row), band(row), ours, said, realizations,
              study_cell(results, study)]
     return "| " + " | ".join(cells) + " |\n", said

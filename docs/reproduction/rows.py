@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import pathlib
 import tomllib
+from dataclasses import replace
 from typing import Any, Callable
 
 from summaries import NAN, Measured, Refused, Results
@@ -20,7 +21,7 @@ FILES = ("roul-piles", "roul-fits", "roul-layers", "wellmann", "liffman")
 NOT_RUN = "not run"
 WIDE = "spread too wide to tell"
 COARSE = "nearer than the recorded strains can tell"
-TOO_WIDE = 0.5  #: share of the value, or of the effect, that 2 standard errors may take
+TOO_WIDE = 0.5  #: share of the value, or of the effect, that half of our 95 % interval may take
 
 Row = dict[str, Any]
 Rule = Callable[[Row, Results], "str | Measured | None"]
@@ -43,7 +44,7 @@ def all_rows() -> list[Row]:
 
 def _plain(row: Row, results: Results) -> Measured | None:
     found = results.number(row["study"], row["key"], row.get("member", ""))
-    return Measured(abs(found.value), found.error) if found and row.get("size") else found
+    return replace(found, value=abs(found.value)) if found and row.get("size") else found
 
 
 def _flank(steeper: bool) -> Rule:
@@ -70,7 +71,8 @@ def _ratio(row: Row, results: Results) -> Measured | None:
     b, a = pair
     ratio = a.value / b.value
     rho = min(max(ratio, row["range"][0]), row["range"][1])
-    return Measured(ratio, math.hypot(a.error, rho * b.error) / abs(b.value))
+    away = a.less(b, rho)
+    return replace(away, value=ratio, error=away.error / abs(b.value))
 
 
 # Words, each "WORD: what supports it".
@@ -130,42 +132,56 @@ def _pair(row: Row, results: Results) -> tuple[Measured, Measured] | None:
     return None if a is None or b is None else (a, b)
 
 
-def _change(row: Row, results: Results) -> tuple[float, float, float] | None:
-    """The second of a pair less the first: difference, its error, the value of the first.
+def _change(row: Row, results: Results) -> tuple[Measured, float] | None:
+    """The second of a pair less the first, and the value of the first.
 
     Samples of one seed share their first state where only the friction differs; the error is that
     of independent ones, which is no less.
     """
     pair = _pair(row, results)
-    if pair is None:
-        return None
-    a, b = pair
-    return b.value - a.value, math.hypot(a.error, b.error), a.value
+    return None if pair is None else (pair[1].less(pair[0]), pair[0].value)
 
 
 def _rises(row: Row, results: Results) -> str | None:
     change = _change(row, results)
     if change is None:
         return None
-    by, error, _ = change
-    word = "rises" if by > 2 * error else "falls" if by < -2 * error else "undecided"
-    return f"{word}: {by:+.3f} ± {error:.3f}"
+    by, _ = change
+    word = "rises" if by.value > by.half else "falls" if by.value < -by.half else "undecided"
+    return f"{word}: {by.value:+.3f} ± {by.error:.3f}"
+
+
+def _smallness(by: Measured, most: float, words: tuple[str, str]) -> str:
+    """The first word where a change is at most MOST, the second where it is more, "between" if undecided."""
+    if abs(by.value) + by.half <= most:
+        return words[0]
+    return words[1] if abs(by.value) - by.half > most else "between"
 
 
 def _hardly_changes(row: Row, results: Results) -> str | None:
     change = _change(row, results)
     if change is None:
         return None
-    by, error, base = change
-    most = row["within"] * abs(base)
-    if not math.isfinite(error):
-        return f"undecided: {by:+.3f}, {100 * by / base:+.0f} %"
-    word = "between"
-    if abs(by) + 2 * error <= most:
-        word = "hardly changes"
-    elif abs(by) - 2 * error > most:
-        word = "changes"
-    return f"{word}: {by:+.3f} ± {error:.3f}, {100 * by / base:+.0f} ± {100 * error / base:.0f} %"
+    by, base = change
+    if not math.isfinite(by.error):
+        return f"undecided: {by.value:+.3f}, {100 * by.value / base:+.0f} %"
+    word = _smallness(by, row["within"] * abs(base), ("hardly changes", "changes"))
+    return (f"{word}: {by.value:+.3f} ± {by.error:.3f}, "
+            f"{100 * by.value / base:+.0f} ± {100 * by.error / abs(base):.0f} %")
+
+
+def _negligible(row: Row, results: Results) -> str | None:
+    """A change beside that between the members `beside`, whose value counts as known."""
+    change, other = _change(row, results), _change(row | dict(zip(("from", "to"), row["beside"])), results)
+    if change is None or other is None:
+        return None
+    (by, _), (whole, _) = change, other
+    share = 100 / abs(whole.value)
+    if not math.isfinite(by.error):
+        return f"undecided: {by.value:+.3f}, {share * by.value:+.0f} %"
+    word = _smallness(by, row["within"] * abs(whole.value), ("negligible", "counts"))
+    return (f"{word}: {by.value:+.3f} ± {by.error:.3f} beside {whole.value:+.3f}, "
+            f"{share * by.value:+.0f} ± {share * by.error:.0f} %")
 
 
 def _contraction(row: Row, results: Results) -> str | None:
@@ -174,7 +190,7 @@ def _contraction(row: Row, results: Results) -> str | None:
                 for name in ("contraction", "dilation"))
     if down is None or up is None:
         return None
-    falls, rises = down.value > 2 * down.error, up.value > 2 * up.error
+    falls, rises = down.value > down.half, up.value > up.half
     word = ", then ".join(["contraction"] * falls + ["dilation"] * rises) or "neither"
     then = f"then rises by {up.value:.5f} ± {up.error:.5f}"
     if up.value == 0 and up.error == 0:
@@ -205,7 +221,7 @@ def _kink(row: Row, results: Results) -> str | None:
     if size is None or ray is None or math.isnan(size.error):
         return None
     word = "dip" if size.value < 0 else "peak"
-    if abs(size.value) <= 2 * size.error:
+    if abs(size.value) <= size.half:
         word = "neither"
     return (f"{word}: kink {size.value:.2f} ± {size.error:.2f} ρg "
             f"on the ray at {ray.value:.0f}° from the vertical")
@@ -249,6 +265,7 @@ RULES: dict[str, Rule] = {
     "peaks at every depth": _peaks_at_every_depth,
     "rises": _rises,
     "hardly changes": _hardly_changes,
+    "negligible": _negligible,
     "contraction": _contraction,
     "fit quality": _fit_quality,
     "branch": _branch,
@@ -274,11 +291,11 @@ RULE_BANDS = {
     "dip over all pours": "at 5 %, Holm",
     "dip by itself": "at 5 %",
     "peaks at every depth": "at a quarter, half and three quarters",
-    "rises": "by more than 2 standard errors",
-    "contraction": "each by more than 2 standard errors",
+    "rises": "beyond our 95 % interval",
+    "contraction": "each beyond our 95 % interval",
     "fit quality": "by the chance level of χ²/dof",
     "branch": "the nearest of three",
-    "kink": "by more than 2 standard errors",
+    "kink": "beyond our 95 % interval",
     "convergence": "the difference falls by more than a fifth, or not",
     "turning soft": "all at rest, 90 % of them soft",
     "static friction": "no rest without it",
@@ -312,7 +329,8 @@ def band(row: Row) -> str:
         spans = [_interval(ends[k], ends[k + 1], percent)
                  for k, word in enumerate(row["words"]) if word in row["agrees"]]
         return f"{words} ({' or '.join(spans)})"
-    rule = RULE_BANDS.get(row["rule"]) or f"by at most {100 * row['within']:g} %"
+    of = " of that from μ" if row["rule"] == "negligible" else ""
+    rule = RULE_BANDS.get(row["rule"]) or f"by at most {100 * row['within']:g} %{of}"
     return f"{words} ({rule})"
 
 
@@ -331,11 +349,11 @@ def number_text(found: Measured, row: Row) -> str:
 
 
 def agreement(found: Measured, row: Row) -> str:
-    """Agrees when the source's range and ours ± 2 standard errors overlap.
+    """Agrees when ours lies in the source's range, differs when no value of our 95 % interval does.
 
-    It says nothing with one realization, where the miss is within `resolution` (half the distance of
-    the recorded states), or where 2 standard errors exceed TOO_WIDE of the source's
-    value (of the effect that a ratio reports).
+    It says nothing with one realization, between the two, where the miss is within `resolution` (half
+    the distance of the recorded states), or where the interval ends outside the range and half of it
+    exceeds TOO_WIDE of the source's value (of the effect that a ratio reports).
     """
     if math.isnan(found.error):
         return "no error, no statement"
@@ -343,10 +361,11 @@ def agreement(found: Measured, row: Row) -> str:
     miss = max(0.0, low - found.value, found.value - high)
     if 0 < miss <= row.get("resolution", 0):
         return COARSE
-    if miss > 2 * found.error:
+    if miss > found.half:
         return f"differs by {with_unit(f'{miss:.2g}', row)} ({miss / found.error:.1f} standard errors)"
     stake = row.get("effect", abs((low + high) / 2))
-    return WIDE if 2 * found.error > TOO_WIDE * stake else "agrees"
+    inside = "effect" not in row and low <= found.value - found.half and found.value + found.half <= high
+    return "agrees" if inside or miss == 0 and found.half <= TOO_WIDE * stake else WIDE
 
 
 SILENT = {

@@ -6,6 +6,8 @@ import math
 import pathlib
 from dataclasses import dataclass
 
+from scipy import stats
+
 NAN = math.nan
 
 
@@ -15,10 +17,27 @@ class Refused(Exception):
 
 @dataclass(frozen=True)
 class Measured:
-    """A number of ours. error: standard error over realizations; nan with one realization."""
+    """A number of ours. error: standard error over realizations; nan with one realization.
+
+    freedom: degrees of freedom of the error; infinite where the realizations were not counted.
+    """
 
     value: float
     error: float
+    freedom: float = math.inf
+
+    @property
+    def half(self) -> float:
+        """Half of the 95 % interval (Student's t)."""
+        return float(stats.t.ppf(0.975, self.freedom)) * self.error
+
+    def less(self, other: Measured, times: float = 1.0) -> Measured:
+        """This less TIMES the other, an independent one; degrees of freedom by Welch and Satterthwaite."""
+        parts = [(self.error**2, self.freedom), ((times * other.error) ** 2, other.freedom)]
+        total = sum(part for part, _ in parts)
+        sure = sum(part**2 / freedom for part, freedom in parts)
+        return Measured(self.value - times * other.value, math.sqrt(total),
+                        total**2 / sure if sure > 0 else math.inf)
 
 
 @dataclass(frozen=True)
@@ -102,13 +121,20 @@ class Results:
         value = self.plain(study, key + dot)
         if value is None or math.isnan(value):
             return None
+        count = self.realizations(study, member)
+        freedom = count - 1 if count is not None and count > 1 else math.inf
         if key.startswith("fit."):
             kinds = [self.plain(study, f"{key}.{kind}") for kind in ("error", "bootstrap_error")]
-            return Measured(value, max((e for e in kinds if e is not None and math.isfinite(e)), default=NAN))
+            return Measured(value, max((e for e in kinds if e is not None and math.isfinite(e)), default=NAN), freedom)
         error = self.plain(study, f"{key}.standard_error{dot}")
         if error is None and key == "dip.difference":
             error = self.plain(study, f"dip.standard_error{dot}")
-        return Measured(value, NAN if error is None else error)
+        return Measured(value, NAN if error is None else error, freedom)
+
+    def realizations(self, study: str, member: str = "") -> float | None:
+        """How many a study has, or its member where that was counted."""
+        own = self.plain(study, f"ensemble.realizations.{member}") if member else None
+        return self.plain(study, "ensemble.realizations") if own is None else own
 
     def beside(self, study: str) -> list[str]:
         """Names of the profiles and pictures of a study."""

@@ -138,15 +138,31 @@ def test_every_key_is_one_that_summaries_have():
 def test_agreement_by_its_rule():
     row = {"unit": "deg", "range": [27, 29]}
     assert agreement(Measured(28, 0.1), row) == "agrees"
-    assert agreement(Measured(30, 0.6), row) == "agrees"
+    # Outside, but the interval reaches in.
+    assert agreement(Measured(30, 0.6), row) == "spread too wide to tell"
     assert agreement(Measured(30, 0.4), row) == "differs by 1 deg (2.5 standard errors)"
     assert agreement(Measured(20, 10), row) == "spread too wide to tell"
     assert agreement(Measured(28, NAN), row) == "no error, no statement"
+    # Three realizations have 4.30 standard errors, two have 12.7.
+    assert agreement(Measured(30, 0.3, freedom=2), row) == "spread too wide to tell"
+    assert agreement(Measured(30, 0.2, freedom=2), row) == "differs by 1 deg (5.0 standard errors)"
+    assert agreement(Measured(30, 0.08, freedom=1), row) == "spread too wide to tell"
+    # Within a band that begins at 0, however small its middle.
+    assert agreement(Measured(0.05, 0.02), {"range": [0, 0.1]}) == "agrees"
+    assert agreement(Measured(0.05, 0.03), {"range": [0, 0.1]}) == "spread too wide to tell"
     # A ratio that cannot tell 1.09 from 1 says nothing, although its range holds 1.09.
     ratio = {"range": [1.08, 1.10]}
-    assert agreement(Measured(1.0, 0.05), ratio) == "agrees"
-    assert agreement(Measured(1.0, 0.05), ratio | {"effect": 0.09}) == "spread too wide to tell"
-    assert agreement(Measured(1.07, 0.02), ratio | {"effect": 0.09}) == "agrees"
+    assert agreement(Measured(1.09, 0.05), ratio) == "agrees"
+    assert agreement(Measured(1.09, 0.05), ratio | {"effect": 0.09}) == "spread too wide to tell"
+    assert agreement(Measured(1.085, 0.02), ratio | {"effect": 0.09}) == "agrees"
+
+
+def test_differences_of_small_ensembles_have_the_freedom_of_both():
+    """Welch and Satterthwaite: of equal errors the sum of both, of unequal ones that of the larger."""
+    assert Measured(3, 1, freedom=2).less(Measured(1, 1, freedom=2)) == Measured(2, 2**0.5, freedom=pytest.approx(4))
+    assert Measured(3, 1, freedom=2).less(Measured(1, 0, freedom=7), times=2) == Measured(1, 1, freedom=2)
+    assert Measured(0, 1, freedom=1).half == pytest.approx(12.706, abs=1e-3)
+    assert Measured(0, 1).half == pytest.approx(1.96, abs=1e-3)
 
 
 def test_holm_by_hand():
@@ -163,7 +179,7 @@ def test_fits_give_the_larger_error_and_quality_in_words(made):
         "fit-asymmetric": {
             "fit.cantelaube_asymmetric.kink": -0.3, "fit.cantelaube_asymmetric.kink.error": 0.1,
             "fit.cantelaube_asymmetric.ray_deg": 4}})
-    assert row_of(text, "OSL, point source: η")[3:5] == ["0.720 ± 0.020", "agrees"]
+    assert row_of(text, "OSL, point source: η")[3:5] == ["0.720 ± 0.020", "spread too wide to tell"]
     assert row_of(text, "OSL, point source: μ")[3:5] == ["-0.500 ± 0.030", "differs by 0.18 (6.0 standard errors)"]
     assert row_of(text, "OSL, point source, η and μ free: agreement")[3:5] == [
         "beyond the errors: χ²/dof 1.30 (chance: up to 1.21), relative L2 8.0 %", "differs"]
@@ -234,13 +250,17 @@ def test_superellipsoids_change_in_words_with_notes_on_the_run(made):
            "dem.grains.least.penalty_05": 200, "dem.grains.least.penalty_025": 200}
     for key, (value, error) in {
             "q_over_p_at_0.04.penalty_05_soft": (1.2, 0.02), "q_over_p_at_0.04.penalty_05": (1.4, 0.02),
-            "q_over_p_at_0.04.penalty_025": (1, 0.02), "q_over_p_at_0.04.penalty_025_soft": (0.88, 0.02),
-            "q_over_p_at_0.04.hertz_05_nu_0": (1.4, 0.02), "q_over_p_at_0.04.hertz_05_nu_045": (1.45, 0.02),
-            "q_over_p_at_0.04.hertz_05": (1.4, 0.02), "q_over_p_at_0.04.hertz_025": (1.39, 0.02),
+            "q_over_p_at_0.04.penalty_025": (1, 0.02), "q_over_p_at_0.04.penalty_025_soft": (0.91, 0.02),
+            "q_over_p_at_0.04.hertz_025_nu_0": (1.4, 0.002), "q_over_p_at_0.04.hertz_025_nu_045": (1.401, 0.002),
+            "q_over_p_at_0.04.hertz_05": (1.4, 0.02), "q_over_p_at_0.04.hertz_025": (0.99, 0.02),
+            "sample.lateral_stress_ratio.penalty_05": (0.3, 0.002), "sample.lateral_stress_ratio.hertz_05": (0.31, 0.002),
+            "sample.pressure_ratio.shear_hertz_0": (1, 0.02),
             "sample.end_axial_stress_ratio.penalty_0": (0.1, 0.01), "sample.kinetic_share.penalty_0": (15, 1),
             "rve.contraction.shear_hertz_05": (0.0002, 0.0002), "rve.dilation.shear_hertz_05": (0.001, 0.0001),
             "sample.axial_dip_strain.shear_penalty_025": (0.07, 0.003),
             "sample.pressure_ratio.shear_penalty_025": (1.3, 0.02),
+            "sample.shear_over_pressure.shear_penalty_025": (0.80, 0.02),
+            "sample.shear_over_pressure.shear_hertz_025": (0.81, 0.02),
             "sample.pressure_ratio.shear_hertz_025": (1.2, 0.02)}.items():
         box[key] = value
         box[".standard_error.".join(key.rsplit(".", 1))] = error
@@ -251,13 +271,17 @@ def test_superellipsoids_change_in_words_with_notes_on_the_run(made):
 
     assert row_of(text, "q/p from mu = 0.25 to 0.5, penalty law")[3:] == [
         "rises: +0.400 ± 0.028", "agrees", "", "`wellmann-box` (quick, 200 grains)"]
-    assert said("q/p from mu = 0.25 to 0.5, Hertz law") == ["undecided: +0.010 ± 0.028",
-                                                            "too few realizations to tell"]
-    assert said("q/p from c^T/c^N = 0.25 to 1, mu = 0.5") == ["changes: +0.200 ± 0.028, +17 ± 2 %", "differs"]
-    # Above a tenth, but not by two errors: neither.
-    assert said("q/p from c^T/c^N = 0.25 to 1, mu = 0.25") == ["between: +0.120 ± 0.028, +14 ± 3 %",
-                                                               "spread too wide to tell"]
-    assert said("q/p from nu = 0 to 0.45, mu = 0.5") == ["hardly changes: +0.050 ± 0.028, +4 ± 2 %", "agrees"]
+    assert said("shear stress over the first volumetric one, from penalty to Hertz law") == [
+        "undecided: +0.010 ± 0.028", "too few realizations to tell"]
+    assert said("q/p from c^T/c^N = 0.25 to 1, mu = 0.5") == [
+        "counts: +0.200 ± 0.028 beside +0.400, +50 ± 7 %", "differs"]
+    # Above a tenth of what friction does, but not by two errors: neither.
+    assert said("q/p from c^T/c^N = 0.25 to 1, mu = 0.25") == [
+        "between: +0.090 ± 0.028 beside +0.400, +22 ± 7 %", "spread too wide to tell"]
+    assert said("q/p from nu = 0 to 0.45, mu = 0.25") == [
+        "negligible: +0.001 ± 0.003 beside +0.410, +0 ± 1 %", "agrees"]
+    assert said("lateral over axial stress, from penalty to Hertz law") == [
+        "hardly changes: +0.010 ± 0.003, +3 ± 1 %", "agrees"]
     assert said("q/p without friction, penalty law") == [
         "0.100 ± 0.010", "agrees; slow flow, not at rest: kinetic over elastic energy up to 15"]
     assert said("volume of the RVEs under shear, mu = 0.5") == [
@@ -270,14 +294,14 @@ def test_superellipsoids_change_in_words_with_notes_on_the_run(made):
 
 def test_a_row_counts_the_realizations_of_its_member(made):
     box = {"ensemble.realizations": 3, "ensemble.realizations.shear_hertz_05": 2, "sample.pressure_ratio.shear_hertz_05": 3,
-           "sample.pressure_ratio.standard_error.shear_hertz_05": 0.1, "sample.dropped_solid_fraction.hertz_025": 0.63,
+           "sample.pressure_ratio.standard_error.shear_hertz_05": 0.05, "sample.dropped_solid_fraction.hertz_025": 0.63,
            "sample.dropped_solid_fraction.standard_error.hertz_025": 0.001,
            "sample.axial_dip_strain.shear_penalty_025": 0.035,
            "sample.axial_dip_strain.standard_error.shear_penalty_025": 0.0,
            "shear_stiffness.first.shear_hertz_025": 9, "shear_stiffness.first.standard_error.shear_hertz_025": 0.3,
            "shear_stiffness.middle.shear_hertz_025": 3, "shear_stiffness.middle.standard_error.shear_hertz_025": 0.4}
     text = made({"wellmann-box": box})
-    assert row_of(text, "volumetric stress over its start, mu = 0.5")[3:6] == ["3.000 ± 0.100", "agrees", "2"]
+    assert row_of(text, "volumetric stress over its start, mu = 0.5")[3:6] == ["3.000 ± 0.050", "agrees", "2"]
     assert row_of(text, "volume fraction of 1,530 dropped grains and spheres below the lid")[5] == "3"
     # A miss of half the distance of the recorded states is none that these can tell.
     assert row_of(text, "shear strain xz where the axial stress is least, penalty law, mu = 0.25")[4] == (
@@ -293,9 +317,12 @@ def test_a_figure_that_a_study_lacks_says_why(made):
 
 
 def test_one_sample_decides_nothing_and_no_run_is_said_so(made):
-    text = made({"wellmann-box": {"q_over_p_at_0.04.penalty_05_soft": 1.2, "q_over_p_at_0.04.penalty_05": 1.201}})
-    assert row_of(text, "q/p from c^T/c^N = 0.25 to 1, mu = 0.5")[3:5] == ["undecided: +0.001, +0 %",
-                                                                         "too few realizations to tell"]
+    text = made({"wellmann-box": {"q_over_p_at_0.04.penalty_05_soft": 1.2, "q_over_p_at_0.04.penalty_05": 1.201,
+                                  "q_over_p_at_0.04.penalty_025": 1.1, "sample.lateral_stress_ratio.penalty_05": 0.3,
+                                  "sample.lateral_stress_ratio.hertz_05": 0.303}})
+    few = "too few realizations to tell"
+    assert row_of(text, "q/p from c^T/c^N = 0.25 to 1, mu = 0.5")[3:5] == ["undecided: +0.001, +1 %", few]
+    assert row_of(text, "lateral over axial stress, from penalty to Hertz law")[3:5] == ["undecided: +0.003, +1 %", few]
     assert row_of(text, "angle of repose, point source")[3] == "not run"
 
 
@@ -356,11 +383,11 @@ def test_collected_runs_by_hand():
     def run(member, p, stress):
         states = {name: collect.numpy.array(values) for name, values in {
             "strain": [0, 0.04, 0.08, 0.1, 0.12, 0.14, 0.2], "p": [p] * 7, "sigma_xz": [s * p for s in stress]}.items()}
-        return member, {"summary": {"sample.a": p, "sample.b": None, "case.name": "box"}, "cpu_seconds": 1}, states
+        return member, {"summary": {"sample.a": p, "sample.b": None, "case.name": "box"}, "cpu_seconds": 1}, states, None
 
     straight = [0, 0.4, 0.6, 0.65, 0.7, 0.75, 0.9]
     out = collect.collect([run("shear_a", 10, straight), run("shear_a", 14, [-s for s in straight]),
-                           ("filled", {"summary": {"sample.a": 3}, "cpu_seconds": 2}, None)])
+                           ("filled", {"summary": {"sample.a": 3}, "cpu_seconds": 2}, None, None)])
     assert out["sample.a.shear_a"] == 12 and out["sample.a.least.shear_a"] == 10
     assert out["sample.a.standard_error.shear_a"] == pytest.approx(2)
     assert out["sample.a.filled"] == 3 and "sample.a.standard_error.filled" not in out
@@ -375,3 +402,13 @@ def test_a_compression_is_read_where_a_state_is_recorded():
         "strain": [0, 0.02, 0.0402, 0.06, 0.04], "p": [0, 1, 4, 3, 2], "axial_q_over_p": [0, 1, 1.2, 1, 1]}.items()}
     assert collect.compression_figures(states) == {"q_over_p_at_0.04": 1.2, "pressure_at_0.04": 4}
     assert collect.compression_figures({**states, "strain": states["strain"] * 0.9}) == {}
+
+
+def test_strains_of_rves_are_read_while_the_sample_is_loaded():
+    """Half of the imposed strain up to 0.02, all of it beyond; another radius and the way back do not count."""
+    imposed = [0, -0.01, -0.02, -0.03, -0.04, -0.03]
+    rves = {"radius": [5] * 6 + [2], "imposed_zz": [*imposed, -1], "imposed_xz": [*imposed, -1],
+            "strain_zz": [0, -0.005, -0.01, -0.02, -0.03, -0.03, 7], "strain_xz": [*imposed, 7]}
+    rves = {name: collect.numpy.array(values) for name, values in rves.items()}
+    assert collect.strain_slopes(rves, "zz") == pytest.approx({"strain_slope.early": 0.5, "strain_slope.late": 1})
+    assert collect.strain_slopes(rves, "xz") == pytest.approx({"strain_slope.early": 1, "strain_slope.late": 1})

@@ -184,7 +184,7 @@ def test_fields_of_arrays_are_files_like_any_other(tmp_path):
     np.testing.assert_array_equal(back.sigma_yy, field["sigma_yy"])
     np.testing.assert_array_equal(back.error("sigma_yy"), field.error("sigma_yy"))
     np.testing.assert_array_equal(back.samples("sigma_yy"), field.samples("sigma_yy"))
-    assert back.units == {"sigma_yy": "N/m", "sigma_xy": "1"} and back.attributes["h"] == "0.5"
+    assert back.units == {"sigma_yy": "N/m", "sigma_xy": "1"} and back.attributes["h"] == 0.5
     assert "field measured: 9 points in 2D, 2 realizations" in program("info", tmp_path / "f.h5")
     gf.write(tmp_path / "f.csv", field)
     table = gf.read(tmp_path / "f.csv")

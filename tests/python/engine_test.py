@@ -140,7 +140,7 @@ def test_the_loop_of_the_page():
     engine, field = names["engine"], names["field"]
     assert len(engine) == 60 and engine.measure()["unbalanced_force_ratio"] < 0.1
     assert engine.in_order(names["places"])[9, 1] == engine.packing().positions[9, 1]
-    assert field.attributes["F"] == "5" and np.nanmin(field.sigma_yy) < -5 / 0.06
+    assert field.attributes["F"] == 5 and np.nanmin(field.sigma_yy) < -5 / 0.06
 
 
 def test_what_cannot_be_set_up_is_refused():

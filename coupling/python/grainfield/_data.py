@@ -209,13 +209,23 @@ class Packing(_Rows):
         return plot_packing(self, ax, forces=forces, change=change)
 
 
+def _attribute(value: Any) -> str | float | list[float]:
+    if isinstance(value, str):
+        return value
+    try:
+        return np.asarray(value, float).tolist()
+    except (TypeError, ValueError):
+        return str(value)
+
+
 class Field:
     """Values on points, with their spread over realizations.
 
     points (n, dim), m, in frame "heap" shares of the height; field["sigma_yy"] or field.sigma_yy (n): means;
     field.error("sigma_yy") (n): standard errors, nan with one realization; field.samples("sigma_yy")
     (n, realizations) or None. shape: (nx, ny) or (nx, ny, nz) of a grid, x fastest, else None.
-    Arrays are read-only views. units: of every column. attributes: what is known of it.
+    Arrays are read-only views. units: of every column. attributes: what is known of
+    it: texts, numbers, or lists with one number per realization.
     """
 
     def __init__(
@@ -244,9 +254,9 @@ class Field:
                 )
                 for column, values in (columns or {}).items()
             ]
-            texts = {key: str(value) for key, value in (attributes or {}).items()}
+            known = {key: _attribute(value) for key, value in (attributes or {}).items()}
             sizes = (list(shape) if shape else []) + [0, 0, 0]
-            self._core = _core.Field(np.asarray(points, float), given, sizes[:3], realizations, texts)
+            self._core = _core.Field(np.asarray(points, float), given, sizes[:3], realizations, known)
         self.name = name
         #: other fields of the same average: "base_response" of a response
         self.beside: dict[str, Field] = {}
@@ -270,8 +280,13 @@ class Field:
         return self._core.realizations()
 
     @property
-    def attributes(self) -> dict[str, str]:
+    def attributes(self) -> dict[str, str | float | list[float]]:
         return self._core.attributes()
+
+    @property
+    def is_over_height(self) -> bool:
+        """Whether lengths are shares of the heaps' height."""
+        return self._core.is_over_height()
 
     @property
     def units(self) -> dict[str, str]:

@@ -74,8 +74,7 @@ def plot_field(field: Field, column: str, ax: Any) -> Any:
     name = column
     if re.fullmatch(r"sigma_(\w)\1", column):  # pressure upwards, as in reports
         name, values = "-" + column, -values
-    frame = field.attributes.get("frame", "")
-    over = "/h" if frame.startswith("heap") and "= -h" not in frame else " (m)"
+    over = "/h" if field.is_over_height else " (m)"
     shape = field.shape
     points = field.points
     axes = axes_of_field(field)

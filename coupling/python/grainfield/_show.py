@@ -111,8 +111,7 @@ def axes_of_field(of: Any) -> tuple[str, ...]:
 
 
 def _units_of_points(of: Any) -> str:
-    frame_name = of.attributes.get("frame", "")
-    return "1" if frame_name.startswith("heap") and "= -h" not in frame_name else "m"
+    return "1" if of.is_over_height else "m"
 
 
 def field_frame(of: Any) -> Any:

@@ -4,11 +4,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "coupling/averaging/average.h"
+#include "coupling/averaging/base.h"
 #include "coupling/heap/cone_windows.h"
+#include "coupling/models/subject.h"
+#include "coupling/observe/seen_models.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/finished_runs.h"
@@ -16,51 +20,97 @@
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/studies/cone/cone_ensemble.h"
-#include "coupling/studies/cone/cone_models.h"
-#include "coupling/studies/cone/finished_cones.h"
 #include "coupling/studies/cone/keys.h"
 #include "coupling/studies/cone/page.h"
 #include "coupling/studies/pile/keys.h"
 #include "dem/study/cone.h"
+#include "dem/study/cone_file.h"
 
 namespace grainfield::coupling {
 namespace {
 
+// A models' cone that is higher over the heap is warned of.
+constexpr double kHigherCone = 1.1;
+
+Observations observed(const ConeEnsemble& cones) {
+  const double h = cones.height, pressure = cones.pressure;
+  Observations out;
+  out.specimen = Specimen::heap;
+  out.realizations = cones.base.realizations();
+  out.scale = scale_of_heaps(
+      h, pressure,
+      fmt::format(" (rho = {:.6g} kg/m3 times mean volume fraction {:.4g}); every cone scaled by "
+                  "its own; means over the angle at radius |x|; realizations: {}",
+                  cones.mean(&ConeFrame::grain_density), cones.mean(&ConeFrame::volume_fraction),
+                  out.realizations),
+      "apex", 3);
+  // The heap's frame has its origin at the highest point, that of the models where flanks meet.
+  out.apex = h * (cones.spanned() - 1);
+  out.told.height = out.told.depth = h * cones.spanned();
+  out.told.dim = 3;
+  out.told.numbers = {{"rho_g", pressure / h}, {"phi_deg", cones.mean(&ConeFrame::repose_deg)}};
+  out.lines = cones.lines();
+  out.map.points = h * rings_in_space(cones.inside);
+  out.map.nx = cones.columns;
+  out.map.ny = 1;
+  out.map.nz = cones.rows;
+  return out;
+}
+
+// A warning where the models' cone is another body than the heap.
+void compare_cones(const ConeEnsemble& cones, StudyResult& out, ConePage& page) {
+  const Observations seen = observed(cones);
+  const std::vector<SeenModel> models = see_models(seen, out.value.models);
+  out.comparison = compared(seen, models);
+  if (models.empty()) return;
+  add_models(out, seen, models);
+  for (const SeenModel& m : models) {
+    page.models.push_back({m.choice.label, m.profiles.label, m.map.col(2) / cones.pressure});
+  }
+  add_compared(out.summary, seen, out.comparison, 0);
+  if (cones.spanned() <= kHigherCone) return;
+  double weight = 0;
+  for (const double w : cones.figures.at("cone.model_over_weight")) {
+    weight += w / seen.realizations;
+  }
+  out.warnings.push_back(fmt::format(
+      "The models' cone, which the flank's line spans, is {:.3g} times as high as the grains' "
+      "rounded heap and weighs {:.3g} times as much: part of every model's distance is that of "
+      "the shapes.",
+      cones.spanned(), weight));
+}
+
 void add_cone_fields(const Case& value, const ConeEnsemble& cones, StudyResult& out,
                      ConePage& page) {
-  for (const ConeAverages& a : cones.methods()) {
-    Field inside = cones.in_metres(a.inside, a.options);
-    inside.nx = cones.columns();
+  for (const MethodAverages& a : cones.methods) {
+    Field inside = cones.in_metres(a.map, a.options);
+    inside.nx = cones.columns;
     inside.ny = 1;
-    inside.nz = cones.rows();
+    inside.nz = cones.rows;
     out.fields.emplace_back(a.method + "_inside", std::move(inside));
-    for (std::size_t k = 0; k < a.cuts.size(); ++k) {
+    for (std::size_t k = 0; k < a.lines.size(); ++k) {
       out.fields.emplace_back(
           fmt::format("{}_height_{:g}", a.method, value.get<HeapSetup>().heights[k]),
-          cones.in_metres(a.cuts[k], a.options));
+          cones.in_metres(a.lines[k], a.options));
     }
-    const std::string prefix = "average." + a.method + ".";
-    out.summary[prefix + "balance_rms"] = a.balance_rms;
-    out.summary[prefix + "balance_largest"] = a.balance_largest;
-    out.summary[a.method == "coarse_graining" ? "average.width" : "average.rve_radius"] =
-        a.options.width;
+    add_method_figures(out.summary, a);
   }
-  page.base = cones.base().mean();
-  page.base.nx = page.base.ny = cones.columns();
-  page.rings = cones.base_rings().mean();
-  page.inside = cones.methods().front().inside.mean();
-  page.inside.nx = cones.columns();
-  page.inside.nz = cones.rows();
-  Field square = cones.in_metres(cones.base(), cones.methods().front().options);
-  square.nx = square.ny = cones.columns();
+  page.base = cones.base.mean();
+  page.base.nx = page.base.ny = cones.columns;
+  page.rings = cones.base_rings.mean();
+  page.inside = cones.methods.front().map.mean();
+  page.inside.nx = cones.columns;
+  page.inside.nz = cones.rows;
+  Field square = cones.in_metres(cones.base, cones.methods.front().options);
+  square.nx = square.ny = cones.columns;
   square.nz = 1;
   out.fields.emplace_back("base", std::move(square));
   out.fields.emplace_back("base_rings",
-                          cones.in_metres(cones.base_rings(), cones.methods().front().options));
+                          cones.in_metres(cones.base_rings, cones.methods.front().options));
 }
 
 void add_base_figures(const ConeEnsemble& cones, Summary& summary) {
-  const Field base = cones.base_rings().mean();
+  const Field base = cones.base_rings.mean();
   const Eigen::VectorXd pressure = -base.find("sigma_zz")->value;
   // The floor pulls the grains inwards with -sigma_rz.
   const Eigen::VectorXd shear = base.find("sigma_rz")->value;
@@ -71,22 +121,21 @@ void add_base_figures(const ConeEnsemble& cones, Summary& summary) {
   }
   summary["base.centre_pressure"] = pressure[0];
   summary["base.largest_pressure"] = pressure[at];
-  summary["base.largest_at"] = cones.radii()[at];
+  summary["base.largest_at"] = cones.radii[at];
   summary["base.largest_shear"] = shear[shear_at];
-  summary["base.largest_shear_at"] = cones.radii()[shear_at];
-  summary["base.smearing_width"] = cones.methods().front().options.width;
+  summary["base.largest_shear_at"] = cones.radii[shear_at];
+  summary["base.smearing_width"] = cones.methods.front().options.width;
   summary["dip.ratio"] = pressure[0] / pressure[at];
 }
 
 void add_dip(const ConeEnsemble& cones, StudyResult& out) {
-  const Dip dip = judge_dip(cones.windows());
+  const Dip dip = judge_dip(cones.windows);
   out.summary["dip.window_ratio"] = dip.window_ratio;
   out.summary["dip.difference"] = dip.difference.mean;
   out.summary["dip.standard_error"] = dip.difference.standard_error;
   out.summary["dip.p_value"] = dip.difference.p_value;
   out.summary["dip.verdict"] = dip.verdict;
   Judgement& judgement = out.comparison.judgement;
-  judgement.noun = "cone";
   judgement.findings = dip_lines(dip);
   if (std::isnan(dip.centre)) {
     judgement.findings = {fmt::format(
@@ -113,9 +162,9 @@ StudyResult analyse_cones(const Case& value, const std::vector<std::string>& fil
   cones.collect();
   StudyResult out = begin_result(value, files);
   out.warnings = cones.warnings();
-  add_figures(out.summary, cones.figures());
+  add_figures(out.summary, cones.figures);
   ConePage page;
-  page.averaged = describe(cones.methods().front().options);
+  page.averaged = describe(cones.methods.front().options);
   add_cone_fields(value, cones, out, page);
   compare_cones(cones, out, page);
   const std::string source = source_of(value, files);
@@ -126,6 +175,29 @@ StudyResult analyse_cones(const Case& value, const std::vector<std::string>& fil
     return cone_page(result, first, page);
   };
   out.overview = {{"shoulder pressure (rho g h)", "dip.shoulder", ""}};
+  return out;
+}
+
+// The cone of a file as a run leaves it. Throws std::invalid_argument "grains.files: ..." for a
+// snapshot that is none, and as dem::check_same_cone, naming the key, where it is another one than
+// the case's.
+dem::RunResult finished_cone(const FinishedRun& place, const dem::ConeSetup& setup) {
+  const dem::Snapshot cone = dem::read_snapshot(place.file, place.group + "/pile");
+  const std::string where = fmt::format("{}:{}/pile", place.file, place.group);
+  if (cone.dim != 3) {
+    throw std::invalid_argument(fmt::format("grains.files: {} is 2D, a 3D one is needed", where));
+  }
+  const auto free = std::count_if(cone.grains.begin(), cone.grains.end(),
+                                  [](const dem::Grain& g) { return !g.fixed; });
+  if (free == 0 || !has_base(cone)) {
+    throw std::invalid_argument(
+        fmt::format("grains.files: {} has no {}", where,
+                    free > 0 ? "base: a wall \"floor\" or fixed grains" : "free grain"));
+  }
+  dem::check_same_cone(setup, cone, where);
+  dem::RunResult out;
+  out.snapshots.emplace_back("pile", cone);
+  out.figures["dem.grains"] = static_cast<double>(free);
   return out;
 }
 
@@ -170,7 +242,7 @@ Study cone_study() {
   out.models_optional = true;
   out.check = [](const Case& value) {
     check_heap_windows(value.get<HeapSetup>());
-    check_cone_models(value);
+    require_subject(value.models, Subject::heap, 3, "compare.models");
   };
   out.averaged = [](const Case& value) {
     return averaged_values(value.get<AverageSetup>(), value.get<HeapSetup>().heights.size() + 1);

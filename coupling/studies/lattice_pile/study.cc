@@ -255,9 +255,11 @@ class LatticePileAnalysis {
     base.add("H_lattice", "N").value = lattice_horizontal_;
     base.add("N_lines", "N").value = line_normal_;
     base.add("H_lines", "N").value = line_horizontal_;
-    base.attributes["frame"] = "heap: apex at (0, 0), base y = -h, of the outline";
-    base.attributes["h"] = fmt::format("{}", heap_.height());
-    base.attributes["grain_weight"] = fmt::format("{}", weight_);
+    base.attributes["frame"] = "heap";
+    base.attributes["lengths"] = "m";
+    base.attributes["what"] = "base of the outline";
+    base.attributes["h"] = heap_.height();
+    base.attributes["grain_weight"] = weight_;
     out.fields.emplace_back("base", std::move(base));
   }
 

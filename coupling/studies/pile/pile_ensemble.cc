@@ -6,11 +6,13 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "coupling/averaging/average.h"
 #include "coupling/averaging/base.h"
 #include "coupling/heap/axis_stress.h"
 #include "coupling/heap/scaled.h"
 #include "coupling/heap/setup.h"
 #include "coupling/run/averaging_setup.h"
+#include "dem/snapshot/contact_changes.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -43,16 +45,17 @@ double coordination(const dem::Snapshot& snapshot) {
   return ends / grains;
 }
 
-PileEnsemble::PileEnsemble(const Case& value, const std::vector<std::string>& files, int threads)
-    : value_(value), files_(files) {
+PileEnsemble::PileEnsemble(const Case& a_case, const std::vector<std::string>& realizations,
+                           int threads)
+    : value(a_case), files(realizations) {
   double reach = 0, reach_of_all = 0;
   for (const std::string& file : files) {
     const Realization realization = read_realization(file);
-    frames_.push_back(pile_frame(realization["pile"]));
-    const PileFrame& f = frames_.back();
+    frames.push_back(pile_frame(realization["pile"]));
+    const PileFrame& f = frames.back();
     const auto n = static_cast<double>(files.size());
-    height_ += f.height / n;
-    pressure_ += f.pressure() / n;
+    height += f.height / n;
+    pressure += f.pressure() / n;
     const double feet = kReach * std::max(f.half_left, f.half_right);
     const double own = std::min(feet, kMostReach * f.middle_reach) / f.height;
     reach_of_all = std::max(reach_of_all, own);
@@ -61,63 +64,59 @@ PileEnsemble::PileEnsemble(const Case& value, const std::vector<std::string>& fi
   if (reach == 0) reach = reach_of_all;
   // An odd number of points, so that one is under the apex.
   const AverageSetup& setup = value.get<AverageSetup>();
-  x_ = Eigen::VectorXd::LinSpaced(2 * (setup.points / 2) + 1, -reach, reach);
-  x_[setup.points / 2] = 0;
-  columns_ = static_cast<int>(setup.map_columns);
-  rows_ = static_cast<int>(setup.map_rows);
-  grid_ = grid_points(-reach, reach, columns_, -1, 0, rows_);
+  x = Eigen::VectorXd::LinSpaced(2 * (setup.points / 2) + 1, -reach, reach);
+  x[setup.points / 2] = 0;
+  columns = static_cast<int>(setup.map_columns);
+  rows = static_cast<int>(setup.map_rows);
+  grid = grid_points(-reach, reach, columns, -1, 0, rows);
   const double diameter = mean(&PileFrame::diameter);
-  for (const std::string& method : setup.methods) {
-    PileAverages a;
-    a.method = method;
-    a.options = average_options(setup, method, diameter, threads);
-    if (a.options.width < kLeastWidth * diameter) {
-      throw std::invalid_argument(fmt::format(
-          "average: {} with a width of {:g} m, below {:g} mean grain diameters of {:.4g} m: no "
-          "point has enough grains around it; raise the width",
-          method, a.options.width, kLeastWidth, diameter));
-    }
-    a.cuts.resize(value.get<HeapSetup>().heights.size());
-    methods_.push_back(std::move(a));
+  methods = methods_of(setup, diameter, threads, 1 + value.get<HeapSetup>().heights.size());
+  for (const MethodAverages& a : methods) {
+    if (a.options.width >= kLeastWidth * diameter) continue;
+    throw std::invalid_argument(fmt::format(
+        "average: {} with a width of {:g} m, below {:g} mean grain diameters of {:.4g} m: no "
+        "point has enough grains around it; raise the width",
+        a.method, a.options.width, kLeastWidth, diameter));
   }
-  kernel_ = seeing_kernel(methods_.front().options);
+  kernel = seeing_kernel(methods.front().options);
 }
 
 double PileEnsemble::mean(double PileFrame::*member) const {
   double sum = 0;
-  for (const PileFrame& f : frames_) sum += f.*member;
-  return sum / static_cast<double>(frames_.size());
+  for (const PileFrame& f : frames) sum += f.*member;
+  return sum / static_cast<double>(frames.size());
+}
+
+double PileEnsemble::share(std::size_t line) const {
+  return line == 0 ? 0 : value.get<HeapSetup>().heights[line - 1];
 }
 
 Eigen::MatrixXd PileEnsemble::line(double height_share) const {
-  Eigen::MatrixXd out(x_.size(), 2);
-  out << x_, Eigen::VectorXd::Constant(x_.size(), height_share - 1);
+  Eigen::MatrixXd out(x.size(), 2);
+  out << x, Eigen::VectorXd::Constant(x.size(), height_share - 1);
   return out;
 }
 
 void PileEnsemble::collect() {
-  for (std::size_t r = 0; r < files_.size(); ++r) add(read_realization(files_[r]), frames_[r]);
+  for (std::size_t r = 0; r < files.size(); ++r) add(read_realization(files[r]), frames[r]);
 }
 
 void PileEnsemble::add(const Realization& realization, const PileFrame& frame) {
   const dem::Snapshot& pile = realization["pile"];
   const double unit = frame.pressure();
-  for (PileAverages& a : methods_) {
+  for (MethodAverages& a : methods) {
     const auto on = [&](const Eigen::MatrixXd& points, int nx, int ny) {
       return scaled_field(average(pile, frame.to_packing(points), a.options), points, unit, nx, ny);
     };
-    a.base.add(on(line(0), 0, 0));
-    for (std::size_t k = 0; k < a.cuts.size(); ++k) {
-      a.cuts[k].add(on(line(value_.get<HeapSetup>().heights[k]), 0, 0));
-    }
-    Field map = on(grid_, columns_, rows_);
+    for (std::size_t k = 0; k < a.lines.size(); ++k) a.lines[k].add(on(line(share(k)), 0, 0));
+    Field map = on(grid, columns, rows);
     if (a.method == "coarse_graining") {
       // The stress stays smeared over the surface, where it obeys the balance of forces; the volume
       // fraction is that of the part of the kernel inside the heap.
       AverageOptions inside = a.options;
       inside.free_surface = "normalised";
       inside.quantities = {"volume_fraction"};
-      const Field fraction = average(pile, frame.to_packing(grid_), inside);
+      const Field fraction = average(pile, frame.to_packing(grid), inside);
       for (Column& column : map.columns) {
         if (column.name == "volume_fraction") {
           column.value = fraction.find("volume_fraction")->value;
@@ -125,23 +124,21 @@ void PileEnsemble::add(const Realization& realization, const PileFrame& frame) {
       }
     }
     a.map.add(map);
-    const BalanceResidual balance = balance_residual(pile, inner_points(frame), a.options);
-    a.balance_rms += balance.rms / static_cast<double>(files_.size());
-    a.balance_largest = std::max(a.balance_largest, balance.largest);
+    a.add_balance(balance_residual(pile, inner_points(frame), a.options), files.size());
   }
-  const Eigen::VectorXd x = frame.height * x_.array() + frame.apex_x;
-  base_.add(scaled_field(base_profile(pile, x, *kernel_), line(0), unit));
-  windows_.push_back(base_windows(pile, frame, value_.get<HeapSetup>()));
+  const Eigen::VectorXd places = frame.height * x.array() + frame.apex_x;
+  base.add(scaled_field(base_profile(pile, places, *kernel), line(0), unit));
+  windows.push_back(base_windows(pile, frame, value.get<HeapSetup>()));
 
-  for (const auto& [key, figure] : realization.figures) figures_[key].push_back(figure);
+  for (const auto& [key, figure] : realization.figures) figures[key].push_back(figure);
   const auto own = [&](const std::string& key, double figure) {
-    if (realization.figures.find(key) == realization.figures.end()) figures_[key].push_back(figure);
+    if (realization.figures.find(key) == realization.figures.end()) figures[key].push_back(figure);
   };
   double weight = 0;
   for (const dem::Grain& grain : pile.grains) {
     if (!grain.fixed) weight += grain.mass * frame.gravity;
   }
-  own("base.weight_ratio", base_force(pile).y() / weight);
+  own("base.weight_ratio", dem::base_force(pile).y() / weight);
   own("dem.repose_angle_left_deg", frame.repose_left_deg);
   own("dem.repose_angle_right_deg", frame.repose_right_deg);
   own("dem.volume_fraction", frame.volume_fraction);
@@ -151,9 +148,9 @@ void PileEnsemble::add(const Realization& realization, const PileFrame& frame) {
   own("pile.half_base_right", frame.half_right);
   own("heap.rho_g_h", unit);
   own("heap.coordination", coordination(pile));
-  own("dip.centre", windows_.back().centre);
-  own("dip.shoulder", windows_.back().shoulder);
-  own("axis.stress_ratio", axis_stress_ratio(pile, frame, value_.get<HeapSetup>()));
+  own("dip.centre", windows.back().centre);
+  own("dip.shoulder", windows.back().shoulder);
+  own("axis.stress_ratio", axis_stress_ratio(pile, frame, value.get<HeapSetup>()));
   own("pile.volume_fraction_centre", frame.centre_fraction);
   own("pile.volume_fraction_surface", frame.surface_fraction);
   for (const auto& [name, state] : realization.snapshots) {
@@ -165,13 +162,13 @@ void PileEnsemble::add_change(const std::string& name, const dem::Snapshot& pile
                               const dem::Snapshot& changed, const PileFrame& frame) {
   require_same_grains(pile, changed);
   const double now = coordination(changed);
-  figures_["change." + name + ".coordination"].push_back(now);
-  figures_["change." + name + ".coordination_ratio"].push_back(now / coordination(pile));
-  const BaseWindows before = base_windows(pile, frame, value_.get<HeapSetup>());
-  const BaseWindows after = base_windows(changed, frame, value_.get<HeapSetup>());
+  figures["change." + name + ".coordination"].push_back(now);
+  figures["change." + name + ".coordination_ratio"].push_back(now / coordination(pile));
+  const BaseWindows before = base_windows(pile, frame, value.get<HeapSetup>());
+  const BaseWindows after = base_windows(changed, frame, value.get<HeapSetup>());
   // Pressures in units of the pile's rho g h: the gravity's own factor is taken out.
   const double factor = changed.gravity.norm() / frame.gravity;
-  figures_["change." + name + ".dip_difference_change"].push_back(
+  figures["change." + name + ".dip_difference_change"].push_back(
       (after.shoulder - after.centre) / factor - (before.shoulder - before.centre));
 }
 

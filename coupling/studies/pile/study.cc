@@ -7,10 +7,11 @@
 #include <map>
 #include <optional>
 
+#include "coupling/heap/scaled.h"
 #include "coupling/heap/setup.h"
-#include "coupling/models/model_record.h"
-#include "coupling/models/models.h"
 #include "coupling/models/subject.h"
+#include "coupling/observe/lines.h"
+#include "coupling/observe/seen_models.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/measured_base.h"
@@ -34,18 +35,18 @@ class PileAnalysis {
   StudyResult run() {
     piles_.collect();
     StudyResult out = begin_result(value_, files_);
-    add_figures(out.summary, piles_.figures());
+    add_figures(out.summary, piles_.figures);
     add_fields(out);
-    add_comparison_of_models(out);
+    compare_models(out);
     add_own_figures(out.summary);
-    const Dip dip = judge_dip(piles_.windows());
+    const Dip dip = judge_dip(piles_.windows);
     add_dip(out, dip);
     std::optional<Chart> beside;
     if (const MeasuredSetup& measured = value_.get<MeasuredSetup>(); !measured.field.empty()) {
       beside = beside_measured(base_profile(), measured_base(measured), out.summary);
       out.sweep_charts.push_back(*beside);
     }
-    const std::string averaged = describe(piles_.methods().front().options);
+    const std::string averaged = describe(piles_.methods.front().options);
     out.page = [averaged, beside, flat = flat_piles()](const StudyResult& result,
                                                        const Realization* first) {
       return page(result, first, averaged, beside, flat);
@@ -56,14 +57,14 @@ class PileAnalysis {
  private:
   // N/m, over the base between the mean feet.
   BaseProfile base_profile() const {
-    const Field base = piles_.base().mean();
+    const Field base = piles_.base.mean();
     const double left = piles_.mean(&PileFrame::half_left);
     const double right = piles_.mean(&PileFrame::half_right);
-    const double unit = piles_.pressure();
+    const double unit = piles_.pressure;
     const Column *down = base.find("sigma_yy"), *along = base.find("sigma_xy");
     BaseProfile out;
-    out.height = piles_.height() / (left + right);
-    out.x = (piles_.height() * piles_.x().array() - 0.5 * (right - left)) / (left + right);
+    out.height = piles_.height / (left + right);
+    out.x = (piles_.height * piles_.x.array() - 0.5 * (right - left)) / (left + right);
     out.normal = -unit * down->value;
     out.shear = unit * along->value;
     out.normal_error = unit * down->error;
@@ -72,162 +73,99 @@ class PileAnalysis {
   }
 
   // Values of a scaled field in N/m on points in m, in the heap's frame.
-  Field in_metres(const Ensemble& ensemble, const AverageOptions* options) const {
-    Field field = ensemble.mean();
-    field.points *= piles_.height();
-    for (Column& column : field.columns) {
-      if (column.name.compare(0, 6, "sigma_") != 0) continue;
-      if (ensemble.realizations() > 1) {
-        column.samples = piles_.pressure() * ensemble.samples(column.name);
-      }
-      column.unit = "N/m";
-      column.value *= piles_.pressure();
-      column.error *= piles_.pressure();
-    }
-    if (options != nullptr) {
-      field.attributes["method"] = options->method;
-      field.attributes["kernel"] = options->kernel;
-      field.attributes["width"] = fmt::format("{}", options->width);
-    }
-    field.attributes["h"] = fmt::format("{}", piles_.height());
-    field.attributes["rho_g_h"] = fmt::format("{}", piles_.pressure());
-    field.attributes["left_deg"] = fmt::format("{}", piles_.mean(&PileFrame::repose_left_deg));
-    field.attributes["right_deg"] = fmt::format("{}", piles_.mean(&PileFrame::repose_right_deg));
-    field.attributes["frame"] =
-        "heap: apex at (0, 0), floor y = -h; every pile scaled by its own height and rho g h";
+  Field in_metres(const Ensemble& ensemble, const AverageOptions& options) const {
+    Field field = of_mean_heap(ensemble, piles_.height, piles_.pressure);
+    say_averaging(options, field);
+    field.attributes["left_deg"] = piles_.mean(&PileFrame::repose_left_deg);
+    field.attributes["right_deg"] = piles_.mean(&PileFrame::repose_right_deg);
     return field;
   }
 
-  Profile profile(const Ensemble& ensemble, const std::string& name, const std::string& key,
-                  double height_share) const {
-    const Field mean = ensemble.mean();
-    const Column& column = *mean.find("sigma_yy");
-    Profile out;
-    out.name = name;
-    out.key = key;
-    out.depth = (1 - height_share) * piles_.height();
-    out.x = piles_.height() * piles_.x();
-    out.mean = -piles_.pressure() * column.value;
-    out.error = piles_.pressure() * column.error;
-    out.samples = -piles_.pressure() * ensemble.samples("sigma_yy");
-    out.independent_length = piles_.kernel().independent_length();
-    return out;
+  ObservedLine line(const MethodAverages& a, const Ensemble& values, const LineOf& how) const {
+    return observed_line(in_metres(values, a.options), how, piles_.kernel);
   }
 
-  std::vector<Profile> cuts(const PileAverages& a, bool named) const {
-    std::vector<Profile> out;
-    for (std::size_t k = 0; k < a.cuts.size(); ++k) {
-      const double share = value_.get<HeapSetup>().heights[k];
-      const std::string suffix = named ? " " + a.method : "";
-      Profile p = profile(a.cuts[k], fmt::format("height {:g} h{}", share, suffix),
-                          fmt::format("height_{:g}", share), share);
-      // High cuts of small heaps may have no value at all.
-      if (p.mean.array().isFinite().count() >= 3) out.push_back(std::move(p));
+  std::vector<ObservedLine> cuts(const MethodAverages& a, const std::string& suffix) const {
+    std::vector<ObservedLine> out;
+    for (std::size_t k = 1; k < a.lines.size(); ++k) {
+      out.push_back(line(a, a.lines[k],
+                         {"sigma_yy", fmt::format("height {:g} h{}", piles_.share(k), suffix),
+                          fmt::format("height_{:g}", piles_.share(k))}));
     }
+    // High cuts of small heaps may have no value at all.
+    std::erase_if(out, [](const ObservedLine& cut) {
+      return cut.profile.mean.array().isFinite().count() < 3;
+    });
     return out;
   }
 
   void add_fields(StudyResult& out) const {
-    for (const PileAverages& a : piles_.methods()) {
-      Field map = in_metres(a.map, &a.options);
-      if (&a == &piles_.methods().front()) out.map = map;
+    for (const MethodAverages& a : piles_.methods) {
+      Field map = in_metres(a.map, a.options);
+      if (&a == &piles_.methods.front()) out.map = map;
       out.fields.emplace_back(a.method + "_map", std::move(map));
-      out.fields.emplace_back(a.method + "_base", in_metres(a.base, &a.options));
-      for (std::size_t k = 0; k < a.cuts.size(); ++k) {
+      for (std::size_t k = 0; k < a.lines.size(); ++k) {
         out.fields.emplace_back(
-            fmt::format("{}_height_{:g}", a.method, value_.get<HeapSetup>().heights[k]),
-            in_metres(a.cuts[k], &a.options));
+            k == 0 ? a.method + "_base" : fmt::format("{}_height_{:g}", a.method, piles_.share(k)),
+            in_metres(a.lines[k], a.options));
       }
-      const std::string prefix = "average." + a.method + ".";
-      out.summary[prefix + "balance_rms"] = a.balance_rms;
-      out.summary[prefix + "balance_largest"] = a.balance_largest;
-      out.summary[a.method == "coarse_graining" ? "average.width" : "average.rve_radius"] =
-          a.options.width;
+      add_method_figures(out.summary, a);
     }
-    out.fields.emplace_back("base", in_metres(piles_.base(), &piles_.methods().front().options));
+    out.fields.emplace_back("base", in_metres(piles_.base, piles_.methods.front().options));
   }
 
-  RunFacts facts() const {
-    RunFacts out;
-    out.height = piles_.height();
-    out.depth = piles_.height();
+  Observations observed(const Field& map) const {
+    const double h = piles_.height, unit = piles_.pressure;
     const double left = piles_.mean(&PileFrame::repose_left_deg);
     const double right = piles_.mean(&PileFrame::repose_right_deg);
-    out.numbers = {{"rho_g", piles_.pressure() / piles_.height()},
-                   {"phi_deg", (left + right) / 2},
-                   {"left_deg", left},
-                   {"right_deg", right}};
+    Observations out;
+    out.specimen = Specimen::heap;
+    out.realizations = static_cast<int>(files_.size());
+    out.scale = scale_of_heaps(
+        h, unit,
+        fmt::format(" (rho = {:.6g} kg/m2 times mean volume fraction {:.4g}){}",
+                    piles_.mean(&PileFrame::grain_density),
+                    piles_.mean(&PileFrame::volume_fraction), scaled_alone(out.realizations)));
+    out.told.height = out.told.depth = h;
+    out.told.numbers = {{"rho_g", unit / h},
+                        {"phi_deg", (left + right) / 2},
+                        {"left_deg", left},
+                        {"right_deg", right}};
+    const MethodAverages& first = piles_.methods.front();
+    out.lines = {line(first, piles_.base, {"sigma_yy", "base", "base", Smoothing::marginal})};
+    for (ObservedLine& cut : cuts(first, "")) out.lines.push_back(std::move(cut));
+    out.map = map;
     return out;
   }
 
-  std::vector<ModelProfiles> models(StudyResult& out, const std::vector<Profile>& profiles) const {
-    std::vector<PointSet> sets;
-    for (const Profile& p : profiles) {
-      Eigen::MatrixXd points(p.x.size(), 2);
-      points << p.x, Eigen::VectorXd::Constant(p.x.size(), -p.depth);
-      sets.push_back({points, p.key == "base" ? Smoothing::marginal : Smoothing::kernel,
-                      &piles_.kernel(), true});
+  void compare_models(StudyResult& out) const {
+    const Observations seen = observed(out.map);
+    const std::vector<SeenModel> models = see_models(seen, value_.models);
+    out.comparison = compared(seen, models);
+    if (!models.empty()) {
+      add_models(out, seen, models);
+      add_compared(out.summary, seen, out.comparison, 0);
     }
-    const Eigen::MatrixXd grid = piles_.height() * piles_.grid();
-    sets.push_back({grid, Smoothing::none, nullptr, true});
-    const RunFacts known = facts();
-    std::vector<ModelProfiles> all;
-    double seconds = 0;
-    for (const ModelChoice& choice : value_.models) {
-      const Evaluation e = evaluate_model(choice, known, sets);
-      seconds += e.seconds;
-      ModelProfiles m{choice.label, model_label(choice), family_of(choice.name), {}};
-      for (std::size_t s = 0; s + 1 < sets.size(); ++s)
-        m.values.emplace_back(-e.stresses[s].col(1));
-      all.push_back(std::move(m));
-      const Eigen::MatrixXd& map = e.stresses.back();
-      out.model_maps.push_back({model_label(choice), map.col(1)});
-      out.fields.emplace_back(
-          "model_" + choice.label,
-          model_field(choice, known, grid, map, piles_.columns(), piles_.rows()));
-      add_model(out.summary, choice, e.figures, e.seconds);
-    }
-    out.summary["time.continuum_s"] = seconds;
-    return all;
-  }
-
-  void add_comparison_of_models(StudyResult& out) const {
-    const double h = piles_.height(), unit = piles_.pressure();
-    std::vector<Profile> profiles{profile(piles_.base(), "base", "base", 0)};
-    for (Profile& p : cuts(piles_.methods().front(), false)) profiles.push_back(std::move(p));
-    const int n = static_cast<int>(files_.size());
-    const Scale scale =
-        scale_of_heaps(h, unit,
-                       fmt::format(" (rho = {:.6g} kg/m2 times mean volume fraction {:.4g}){}",
-                                   piles_.mean(&PileFrame::grain_density),
-                                   piles_.mean(&PileFrame::volume_fraction), scaled_alone(n)));
-    if (value_.models.empty()) {
-      out.comparison = without_models(std::move(profiles), scale, n);
-    } else {
-      std::vector<ModelProfiles> all = models(out, profiles);
-      out.comparison = compare(std::move(profiles), std::move(all), scale, n);
-      for (const auto& [key, figure] : summary_figures(out.comparison, 0)) {
-        // The response.* keys speak of a load.
-        if (key.compare(0, 9, "response.") != 0) out.summary[key] = figure;
+    for (const MethodAverages& a : piles_.methods) {
+      out.comparison.beside.push_back(
+          line(a, a.lines.front(), {"sigma_yy", "base " + a.method, "base_" + a.method}).profile);
+      if (&a == &piles_.methods.front()) continue;
+      for (ObservedLine& cut : cuts(a, " " + a.method)) {
+        out.comparison.beside.push_back(std::move(cut.profile));
       }
-    }
-    for (const PileAverages& a : piles_.methods()) {
-      out.comparison.beside.push_back(profile(a.base, "base " + a.method, "base_" + a.method, 0));
-      if (&a == &piles_.methods().front()) continue;
-      for (Profile& p : cuts(a, true)) out.comparison.beside.push_back(std::move(p));
     }
   }
 
   void add_own_figures(Summary& summary) const {
     std::map<std::string, std::vector<double>> figures;
     std::vector<double> ratios;
-    for (const PileFrame& f : piles_.frames()) {
+    for (const PileFrame& f : piles_.frames) {
       figures["heap.volume_fraction"].push_back(f.volume_fraction);
       ratios.push_back(f.centre_fraction / f.surface_fraction);
     }
     figures["density.ratio"] = ratios;
-    const auto &left = piles_.figures().at("dem.repose_angle_left_deg"),
-               &right = piles_.figures().at("dem.repose_angle_right_deg");
+    const auto &left = piles_.figures.at("dem.repose_angle_left_deg"),
+               &right = piles_.figures.at("dem.repose_angle_right_deg");
     for (std::size_t r = 0; r < left.size(); ++r) {
       figures["repose.mean_deg"].push_back((left[r] + right[r]) / 2);
       figures["repose.left_minus_right_deg"].push_back(left[r] - right[r]);
@@ -243,22 +181,22 @@ class PileAnalysis {
       summary["sleep.wake_reach"] = value_.get<dem::PileSetup>().sleep.wake_reach;
     }
     add_grain_steps(summary);
-    const Field base = piles_.base().mean();
+    const Field base = piles_.base.mean();
     const Eigen::VectorXd pressure = -base.find("sigma_yy")->value;
     Eigen::Index at = 0;
     const double largest = pressure.maxCoeff(&at);
     const double centre = pressure[pressure.size() / 2];
     summary["base.centre_pressure"] = centre;
     summary["base.largest_pressure"] = largest;
-    summary["base.largest_at"] = std::fabs(piles_.x()[at]);
-    summary["base.smearing_width"] = piles_.methods().front().options.width;
+    summary["base.largest_at"] = std::fabs(piles_.x[at]);
+    summary["base.smearing_width"] = piles_.methods.front().options.width;
     summary["dip.ratio"] = centre / largest;
   }
 
   void add_grain_steps(Summary& summary) const {
-    const auto grains = piles_.figures().find("dem.grains");
-    const auto steps = piles_.figures().find("dem.steps");
-    if (grains == piles_.figures().end() || steps == piles_.figures().end()) return;
+    const auto grains = piles_.figures.find("dem.grains");
+    const auto steps = piles_.figures.find("dem.steps");
+    if (grains == piles_.figures.end() || steps == piles_.figures.end()) return;
     double sum = 0;
     for (std::size_t r = 0; r < files_.size(); ++r) sum += grains->second[r] * steps->second[r];
     summary["dem.grain_steps"] = sum;
@@ -267,8 +205,8 @@ class PileAnalysis {
   // What is said of each pile that is no heap.
   std::vector<std::string> no_heaps() const {
     std::vector<std::string> out;
-    for (std::size_t r = 0; r < piles_.frames().size(); ++r) {
-      std::string why = piles_.frames()[r].no_heap(r);
+    for (std::size_t r = 0; r < piles_.frames.size(); ++r) {
+      std::string why = piles_.frames[r].no_heap(r);
       if (!why.empty()) out.push_back(std::move(why));
     }
     return out;
@@ -289,7 +227,6 @@ class PileAnalysis {
           count, none.front(), none.size() == 1 ? "" : ", and others"));
       judgement.findings.push_back(fmt::format("No heap formed {}.", count));
     }
-    judgement.noun = "pile";
     for (std::string& line : dip_lines(dip)) judgement.findings.push_back(std::move(line));
   }
 
@@ -325,11 +262,11 @@ class PileAnalysis {
   // "no line fits a flank of 2 of 3 piles"; empty: of all piles both slopes are known.
   std::string flat_piles() const {
     std::size_t flat = 0;
-    for (const PileFrame& f : piles_.frames()) {
+    for (const PileFrame& f : piles_.frames) {
       flat += std::isnan(f.repose_left_deg + f.repose_right_deg) ? 1U : 0U;
     }
     if (flat == 0) return "";
-    return fmt::format("no line fits a flank of {} of {} piles", flat, piles_.frames().size());
+    return fmt::format("no line fits a flank of {} of {} piles", flat, piles_.frames.size());
   }
 
   // Figures without a value say why, where it is the flanks.

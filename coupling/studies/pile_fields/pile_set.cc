@@ -146,11 +146,12 @@ Field PileSet::on_grid() const {
   out.nx = columns_;
   out.ny = rows_;
   out.realizations = count();
-  out.attributes["frame"] =
-      "heap: apex at (0, 0), floor y = -h; every pile scaled by its own height";
-  out.attributes["h"] = fmt::format("{}", height());
-  out.attributes["rho_g_h"] = fmt::format("{}", pressure());
-  out.attributes["rve_radius"] = fmt::format("{}", radius_);
+  out.attributes["frame"] = "heap";
+  out.attributes["lengths"] = "m";
+  out.attributes["what"] = "every pile scaled by its own height";
+  out.attributes["h"] = height();
+  out.attributes["rho_g_h"] = pressure();
+  out.attributes["rve_radius"] = radius_;
   return out;
 }
 

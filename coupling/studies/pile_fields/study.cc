@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <map>
 
-#include "coupling/averaging/base.h"
 #include "coupling/report/judgement.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/study_result.h"
@@ -19,6 +18,7 @@
 #include "coupling/studies/pile_fields/setup.h"
 #include "coupling/studies/pile_fields/topic.h"
 #include "coupling/studies/pile_fields/topic_result.h"
+#include "dem/snapshot/contact_changes.h"
 #include "dem/study/setup.h"
 
 namespace grainfield::coupling {
@@ -94,7 +94,7 @@ void add_heaps(const PileSet& piles, const std::vector<std::string>& files, Summ
     };
     double weight = 0;
     for (const dem::Grain& g : one["pile"].grains) weight += g.fixed ? 0 : g.mass * f.gravity;
-    own("base.weight_ratio", base_force(one["pile"]).y() / weight);
+    own("base.weight_ratio", dem::base_force(one["pile"]).y() / weight);
     own("dem.repose_angle_left_deg", f.repose_left_deg);
     own("dem.repose_angle_right_deg", f.repose_right_deg);
     own("pile.height", f.height);

@@ -5,7 +5,7 @@
 
 #include "coupling/fit/figures.h"
 #include "coupling/fit/heap_result.h"
-#include "coupling/fit/setup.h"
+#include "coupling/observe/setup.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/pile/pile_run.h"
 #include "coupling/studies/pile_fit/keys.h"

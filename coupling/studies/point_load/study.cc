@@ -3,23 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
-#include <memory>
+#include <utility>
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/base.h"
-#include "coupling/averaging/ensemble.h"
-#include "coupling/averaging/layer.h"
-#include "coupling/models/model_record.h"
-#include "coupling/models/models.h"
 #include "coupling/models/subject.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
-#include "coupling/run/realization_file.h"
 #include "coupling/studies/point_load/keys.h"
+#include "coupling/studies/point_load/loaded_layers.h"
 #include "coupling/studies/point_load/page.h"
 #include "coupling/studies/point_load/predicted.h"
 #include "coupling/studies/point_load/space.h"
@@ -28,21 +21,6 @@
 namespace grainfield::coupling {
 namespace {
 
-// One averaging method over the ensemble.
-struct Averaged {
-  std::string method;
-  AverageOptions options;
-  std::vector<Ensemble> profiles;  // one per depth
-  Ensemble map, unloaded_map;
-  double balance_rms = 0, balance_largest = 0;
-};
-
-struct Collected {
-  std::vector<Averaged> methods;
-  Ensemble base, base_unloaded;
-  std::map<std::string, std::vector<double>> figures;
-};
-
 // Points inside the layer, away from its edges, where the balance of forces is looked at.
 Eigen::MatrixXd inner_points(const LayerFrame& frame) {
   const double w = frame.width(), h = frame.depth();
@@ -50,49 +28,25 @@ Eigen::MatrixXd inner_points(const LayerFrame& frame) {
                      frame.surface - 0.25 * h, 5);
 }
 
-Field in_models_frame(Field field, const Eigen::MatrixXd& points, int nx, int ny) {
-  field.points = points;
-  field.nx = nx;
-  field.ny = ny;
-  return field;
-}
-
-class PointLoadAnalysis {
+class PlaneAnalysis {
  public:
-  PointLoadAnalysis(const Case& value, const std::vector<std::string>& files, int threads,
-                    const ModelEvaluator& evaluate)
-      : value_(value),
-        files_(files),
-        evaluate_(evaluate),
-        setup_(value.get<AverageSetup>()),
-        layer_(mean_layer(files)) {
-    const double half =
-        setup_.half_width > 0 ? std::min(setup_.half_width, layer_.half_width) : layer_.half_width;
-    x_ = Eigen::VectorXd::LinSpaced(setup_.points, -half, half);
-    for (const double share : setup_.depths) {
-      lines_.push_back(
-          line_points(-half, half, static_cast<int>(setup_.points), -share * layer_.depth));
-    }
-    columns_ = static_cast<int>(setup_.map_columns);
-    rows_ = static_cast<int>(setup_.map_rows);
-    grid_ = grid_points(-half, half, columns_, -layer_.depth, 0, rows_);
-    for (const auto& method : setup_.methods) {
-      Averaged a;
-      a.method = method;
-      a.options = average_options(setup_, method, layer_.diameter, threads);
-      a.profiles.resize(lines_.size());
-      collected_.methods.push_back(std::move(a));
-    }
-    kernel_ = seeing_kernel(collected_.methods.front().options);
+  PlaneAnalysis(const Case& value, const std::vector<std::string>& files, int threads)
+      : all_(value, files, threads, 2, 1) {
+    const double half = all_.half;
+    x_ = Eigen::VectorXd::LinSpaced(all_.setup.points, -half, half);
+    grid_ = grid_points(-half, half, all_.columns, -all_.layer.depth, 0, all_.rows);
   }
 
-  StudyResult run() {
-    for (const auto& file : files_) add(read_realization(file));
-    StudyResult out = begin_result(value_, files_);
+  StudyResult run(const ModelEvaluator& evaluate) {
+    for (const auto& file : all_.files) add(read_realization(file));
+    StudyResult out = begin_result(all_.value, all_.files);
     add_fields(out);
-    add_models(out);
-    add_own_figures(out.summary);
-    add_comparison(out.summary, out.comparison, out.comparison.profiles.size() - 1);
+    const Observations seen = all_.observed(base_, out.map);
+    const std::vector<SeenModel> models = see_models(seen, all_.value.models, evaluate);
+    add_models(out, seen, models);
+    out.comparison = compared(seen, models);
+    all_.add_own_figures(out.summary);
+    add_compared(out.summary, seen, out.comparison, seen.lines.size() - 1);
     out.page = layer_page;
     out.overview = layer_overview();
     return out;
@@ -102,173 +56,57 @@ class PointLoadAnalysis {
   void add(const Realization& r) {
     const dem::Snapshot &unloaded = r["unloaded"], &loaded = r["loaded"];
     const LayerFrame frame = layer_frame(unloaded, loaded.loaded_grain);
-    for (auto& a : collected_.methods) {
-      for (std::size_t d = 0; d < lines_.size(); ++d) {
-        a.profiles[d].add(in_models_frame(
-            response(unloaded, loaded, frame.to_packing(lines_[d]), a.options), lines_[d], 0, 0));
+    const Eigen::MatrixXd grid = frame.to_packing(grid_);
+    for (MethodAverages& a : all_.methods) {
+      const auto on_grid = [&](Field field) {
+        return in_models_frame(std::move(field), grid_, all_.columns, all_.rows);
+      };
+      for (std::size_t d = 0; d < a.lines.size(); ++d) {
+        const Eigen::MatrixXd at =
+            line_points(-all_.half, all_.half, static_cast<int>(x_.size()), all_.height(d));
+        a.lines[d].add(
+            in_models_frame(response(unloaded, loaded, frame.to_packing(at), a.options), at));
       }
-      const Eigen::MatrixXd grid = frame.to_packing(grid_);
-      a.map.add(
-          in_models_frame(response(unloaded, loaded, grid, a.options), grid_, columns_, rows_));
-      a.unloaded_map.add(
-          in_models_frame(average(unloaded, grid, a.options), grid_, columns_, rows_));
-      const BalanceResidual balance = balance_residual(loaded, inner_points(frame), a.options);
-      a.balance_rms += balance.rms / static_cast<double>(files_.size());
-      a.balance_largest = std::max(a.balance_largest, balance.largest);
+      a.map.add(on_grid(response(unloaded, loaded, grid, a.options)));
+      a.beside.front().add(on_grid(average(unloaded, grid, a.options)));
+      a.add_balance(balance_residual(loaded, inner_points(frame), a.options), all_.files.size());
     }
     const Eigen::VectorXd x = x_.array() + frame.load_x;
     Eigen::MatrixXd base(x_.size(), 2);
-    base << x_, Eigen::VectorXd::Constant(x_.size(), -layer_.depth);
-    collected_.base.add(in_models_frame(base_response(unloaded, loaded, x, *kernel_), base, 0, 0));
-    collected_.base_unloaded.add(in_models_frame(base_profile(unloaded, x, *kernel_), base, 0, 0));
-    for (const auto& [key, figure] : r.figures) collected_.figures[key].push_back(figure);
-    collected_.figures["response.total_over_load"].push_back(total_over_load(unloaded, loaded));
-  }
-
-  Profile profile(const Ensemble& ensemble, const std::string& name, const std::string& key,
-                  double depth) const {
-    const Field mean = ensemble.mean();
-    const Column& column = *mean.find("sigma_yy");
-    Profile out;
-    out.name = name;
-    out.key = key;
-    out.depth = depth;
-    out.x = x_;
-    out.mean = -column.value;
-    out.error = column.error;
-    out.samples = -ensemble.samples("sigma_yy");
-    out.independent_length = kernel_->independent_length();
-    return out;
-  }
-
-  std::vector<Profile> profiles() const {
-    std::vector<Profile> out;
-    const Averaged& first = collected_.methods.front();
-    for (std::size_t d = 0; d < lines_.size(); ++d) {
-      const double share = setup_.depths[d];
-      out.push_back(profile(first.profiles[d],
-                            fmt::format("depth {:g} h ({:.4g} m)", share, share * layer_.depth),
-                            fmt::format("depth_{:g}", share), share * layer_.depth));
-    }
-    out.push_back(profile(collected_.base, "base", "base", layer_.depth));
-    return out;
-  }
-
-  // What `grainfield compare` needs to know of a field.
-  Field described(Field field, const AverageOptions& options) const {
-    field.attributes["method"] = options.method;
-    field.attributes["kernel"] = options.kernel;
-    field.attributes["width"] = fmt::format("{}", options.width);
-    field.attributes["h"] = fmt::format("{}", layer_.depth);
-    field.attributes["F"] = fmt::format("{}", value_.get<dem::PointLoadSetup>().load.force);
-    field.attributes["frame"] = "models: load at (0, 0), surface y = 0";
-    return field;
+    base << x_, Eigen::VectorXd::Constant(x_.size(), -all_.layer.depth);
+    base_.add(in_models_frame(base_response(unloaded, loaded, x, *all_.kernel), base));
+    base_unloaded_.add(in_models_frame(base_profile(unloaded, x, *all_.kernel), base));
+    all_.add_figures_of(r);
   }
 
   void add_fields(StudyResult& out) const {
-    for (const auto& a : collected_.methods) {
-      Field map = described(a.map.mean(), a.options);
-      if (&a == &collected_.methods.front()) out.map = map;
-      out.fields.emplace_back(a.method + "_response", std::move(map));
-      out.fields.emplace_back(a.method + "_unloaded", described(a.unloaded_map.mean(), a.options));
-      double largest = 0, error = 0;
-      Eigen::Index n = 0;
-      for (std::size_t d = 0; d < lines_.size(); ++d) {
-        Field line = described(a.profiles[d].mean(), a.options);
-        const Column& column = *line.find("sigma_yy");
-        for (Eigen::Index i = 0; i < column.value.size(); ++i) {
-          if (std::isnan(column.value[i])) continue;
-          largest = std::max(largest, std::fabs(column.value[i]));
-          if (column.error.size() > i && !std::isnan(column.error[i])) {
-            error += column.error[i];
-            ++n;
-          }
-        }
-        out.fields.emplace_back(fmt::format("{}_depth_{:g}", a.method, setup_.depths[d]),
-                                std::move(line));
-      }
-      const std::string prefix = "average." + a.method + ".";
-      out.summary[prefix + "balance_rms"] = a.balance_rms;
-      out.summary[prefix + "balance_largest"] = a.balance_largest;
-      if (n > 0 && largest > 0) {
-        out.summary[prefix + "fluctuation"] = error / static_cast<double>(n) / largest;
+    const auto add = [&](const std::string& name, const Ensemble& of, const MethodAverages& a) {
+      out.fields.emplace_back(name, all_.described(of.mean(), a.options));
+    };
+    for (const MethodAverages& a : all_.methods) {
+      add(a.method + "_response", a.map, a);
+      if (&a == &all_.methods.front()) out.map = out.fields.back().second;
+      add(a.method + "_unloaded", a.beside.front(), a);
+      for (std::size_t d = 0; d < a.lines.size(); ++d) {
+        add(fmt::format("{}_depth_{:g}", a.method, all_.setup.depths[d]), a.lines[d], a);
       }
     }
-    const AverageOptions& first = collected_.methods.front().options;
-    out.base_unloaded = described(collected_.base_unloaded.mean(), first);
-    out.fields.emplace_back("base_response", described(collected_.base.mean(), first));
-    out.fields.emplace_back("base_unloaded", out.base_unloaded);
+    add("base_response", base_, all_.methods.front());
+    add("base_unloaded", base_unloaded_, all_.methods.front());
+    out.base_unloaded = out.fields.back().second;
   }
 
-  void add_models(StudyResult& out) const {
-    std::vector<PointSet> sets;
-    for (const auto& line : lines_) sets.push_back({line, Smoothing::kernel, kernel_.get()});
-    Eigen::MatrixXd base(x_.size(), 2);
-    base << x_, Eigen::VectorXd::Constant(x_.size(), -layer_.depth);
-    sets.push_back({base, Smoothing::marginal, kernel_.get()});
-    sets.push_back({grid_, Smoothing::none, nullptr});
-
-    const double least_share = *std::min_element(setup_.depths.begin(), setup_.depths.end());
-    const RunFacts facts{value_.get<dem::PointLoadSetup>().load.force,
-                         layer_.depth,
-                         2,
-                         least_share * layer_.depth,
-                         "",
-                         {}};
-    std::vector<ModelProfiles> models;
-    double seconds = 0;
-    for (const auto& choice : value_.models) {
-      const Evaluation e = evaluate_(choice, facts, sets);
-      seconds += e.seconds;
-      ModelProfiles m;
-      m.key = choice.label;
-      m.label = model_label(choice);
-      m.family = family_of(choice.name);
-      for (std::size_t s = 0; s + 1 < sets.size(); ++s)
-        m.values.emplace_back(-e.stresses[s].col(1));
-      models.push_back(std::move(m));
-      const Eigen::MatrixXd& map = e.stresses.back();
-      out.model_maps.push_back({model_label(choice), map.col(1)});
-      out.fields.emplace_back("model_" + choice.label,
-                              model_field(choice, facts, grid_, map, columns_, rows_));
-      add_model(out.summary, choice, e.figures, e.seconds);
-    }
-    out.summary["time.continuum_s"] = seconds;
-    out.comparison =
-        compare(profiles(), std::move(models), scale_of_load(facts.force, facts.height));
-    out.comparison.judgement.noun = "layer";
-  }
-
-  void add_own_figures(Summary& summary) const {
-    add_figures(summary, collected_.figures);
-    summary["layer.depth"] = layer_.depth;
-    summary["layer.F_over_h"] = value_.get<dem::PointLoadSetup>().load.force / layer_.depth;
-    summary["layer.mean_diameter"] = layer_.diameter;
-    for (const auto& a : collected_.methods) {
-      summary[a.method == "coarse_graining" ? "average.width" : "average.rve_radius"] =
-          a.options.width;
-    }
-  }
-
-  const Case& value_;
-  const std::vector<std::string>& files_;
-  const ModelEvaluator& evaluate_;
-  const AverageSetup& setup_;
-  MeanLayer layer_;
+  LoadedLayers all_;
   Eigen::VectorXd x_;
-  std::vector<Eigen::MatrixXd> lines_;
   Eigen::MatrixXd grid_;
-  int columns_ = 0, rows_ = 0;
-  Collected collected_;
-  std::unique_ptr<Kernel> kernel_;
+  Ensemble base_, base_unloaded_;
 };
 
 }  // namespace
 
 StudyResult analyse_point_load(const Case& value, const std::vector<std::string>& realizations,
                                int threads, const ModelEvaluator& evaluate) {
-  StudyResult out = PointLoadAnalysis(value, realizations, threads, evaluate).run();
-  return out;
+  return PlaneAnalysis(value, realizations, threads).run(evaluate);
 }
 
 void check_point_load(const Case& value) {

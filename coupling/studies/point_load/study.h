@@ -1,19 +1,15 @@
 // A point load on a layer of grains: averages, models on the same points, comparison.
 #pragma once
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "coupling/case/case.h"
 #include "coupling/case/study.h"
 #include "coupling/models/models.h"
+#include "coupling/observe/seen_models.h"
 #include "coupling/run/study_result.h"
 
 namespace grainfield::coupling {
-
-/// evaluate_model, or another way to the same.
-using ModelEvaluator =
-    std::function<Evaluation(const ModelChoice&, const RunFacts&, const std::vector<PointSet>&)>;
 
 /// Averages the finished realizations (files of run_tasks, in order) and compares them with the
 /// case's models. The bits do not depend on `threads`. Throws what averaging and models throw.

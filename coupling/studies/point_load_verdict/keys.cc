@@ -4,7 +4,7 @@
 #include "coupling/case/declare.h"
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/open_models.h"
-#include "coupling/fit/setup.h"
+#include "coupling/observe/setup.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(VerdictSetup, MEMBER)
 

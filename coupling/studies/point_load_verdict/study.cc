@@ -14,24 +14,60 @@
 #include "coupling/fit/fit_tables.h"
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/models.h"
-#include "coupling/fit/setup.h"
 #include "coupling/judge/judge.h"
 #include "coupling/models/models.h"
+#include "coupling/observe/setup.h"
 #include "coupling/report/judgement.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/point_load/study.h"
-#include "coupling/studies/point_load_verdict/finished_layers.h"
 #include "coupling/studies/point_load_verdict/keys.h"
+#include "dem/snapshot/contact_changes.h"
+#include "dem/snapshot/snapshot.h"
+#include "dem/study/run.h"
 #include "dem/study/setup.h"
 
 namespace grainfield::coupling {
 namespace {
 
+const std::vector<std::string> kStates{"unloaded", "loaded"};
+constexpr const char* kStudy = "point-load";
+constexpr double kSameForce = 1e-9;  // relative: numbers that went through a file
+
+dem::RunResult finished_layer(const FinishedRun& place, double force) {
+  const dem::Snapshot unloaded = dem::read_snapshot(place.file, place.group + "/unloaded");
+  const dem::Snapshot loaded = dem::read_snapshot(place.file, place.group + "/loaded");
+  const double found = -loaded.applied_force.y();
+  if (!(std::fabs(found - force) <= kSameForce * force)) {
+    throw std::invalid_argument(
+        fmt::format("load.force: found {:g}, the layer {}:{} carries {:g} N", force, place.file,
+                    place.group, found));
+  }
+  dem::RunResult out;
+  out.snapshots = {{"unloaded", unloaded}, {"loaded", loaded}};
+  auto& f = out.figures;
+  f["dem.grains"] = static_cast<double>(std::count_if(
+      unloaded.grains.begin(), unloaded.grains.end(), [](const auto& g) { return !g.fixed; }));
+  f["load.force"] = found;
+  f["base.response_over_load"] =
+      (dem::base_force(loaded) - dem::base_force(unloaded)).y() / f["load.force"];
+  const dem::ContactChanges c = dem::compare_contacts(unloaded, loaded);
+  f["load.contacts_gained"] = c.gained;
+  f["load.contacts_lost"] = c.lost;
+  f["load.newly_sliding"] = c.newly_sliding;
+  f["load.max_displacement_over_radius"] = c.max_displacement_over_radius;
+  f["load.no_rearrangement"] = c.gained == 0 && c.lost == 0 ? 1 : 0;
+  return out;
+}
+
+double force_of(const Case& value) { return value.get<dem::PointLoadSetup>().load.force; }
+
 std::unique_ptr<dem::Run> make_run(const Case& value, std::int64_t number, int threads) {
-  if (!value.get<GrainFiles>().files.empty()) return make_finished_layer_run(value, number);
+  if (!value.get<GrainFiles>().files.empty()) {
+    return run_of(finished_layer(finished_run(value, number, kStates, kStudy), force_of(value)));
+  }
   return dem::make_point_load_run(value.get<dem::PointLoadSetup>(), realization_seed(value, number),
                                   threads);
 }
@@ -41,7 +77,8 @@ dem::Outlook foresee(const Case& value, std::int64_t draws) {
     return dem::foresee_point_load(value.get<dem::PointLoadSetup>(), realization_seeds(value),
                                    draws);
   }
-  try_finished_layers(value);
+  try_finished_runs(value, kStates, kStudy,
+                    [&](const FinishedRun& layer) { finished_layer(layer, force_of(value)); });
   return {};
 }
 
@@ -59,7 +96,7 @@ void check(const Case& value) {
 // The models with their constants, for the tables and maps of every loaded layer.
 std::vector<ModelChoice> choices(const EnsembleFits& fits) {
   std::vector<ModelChoice> out;
-  const double h = fits.observed.height;
+  const double h = fits.observed.scale.h;
   for (std::size_t k = 0; k < fits.fits.size(); ++k) {
     out.push_back(registry_choice(fits.models[k], parameters_of(fits.fits[k]), h));
   }
@@ -73,41 +110,35 @@ std::vector<ModelChoice> choices(const EnsembleFits& fits) {
 // Fitted models through an operator for all profiles (a layer node by node takes minutes), others
 // and the map as the registry gives them.
 ModelEvaluator evaluator_of(const std::shared_ptr<const EnsembleFits>& fits) {
-  const auto known = std::make_shared<std::vector<FitModel>>();
-  const auto places = std::make_shared<Eigen::MatrixXd>();
+  const auto averaged = std::make_shared<std::vector<Eigen::MatrixXd>>();  // of each fit, over h
   return [=](const ModelChoice& choice, const RunFacts& facts,
              const std::vector<PointSet>& sets) -> Evaluation {
     const auto fitted = std::find_if(fits->fits.begin(), fits->fits.end(),
                                      [&](const Fit& f) { return f.name == choice.label; });
     if (fitted == fits->fits.end()) return evaluate_model(choice, facts, sets);
     const auto start = std::chrono::steady_clock::now();
-    if (known->empty()) {
-      Eigen::Index rows = 0;
-      for (const PointSet& s : sets) rows += s.smoothing == Smoothing::none ? 0 : s.points.rows();
-      places->resize(rows, 2);
-      rows = 0;
+    if (averaged->empty()) {
+      std::vector<std::string> names;
+      for (const Fit& f : fits->fits) names.push_back(f.name);
+      Eigen::MatrixXd places(0, 2);
       for (const PointSet& s : sets) {
         if (s.smoothing == Smoothing::none) continue;
-        places->middleRows(rows, s.points.rows()) = s.points / facts.height;
-        rows += s.points.rows();
+        places.conservativeResize(places.rows() + s.points.rows(), 2);
+        places.bottomRows(s.points.rows()) = s.points / facts.height;
       }
-      *known = models_of_layers(fits->asked,
-                                std::make_shared<const LayerSight>(*places, *fits->observed.kernel),
-                                facts.height);
+      *averaged = models_at(*fits, names, places);
     }
     const Eigen::MatrixXd all =
-        find_fit_model(*known, choice.label).stress(*places, parameters_of(*fitted)) *
+        averaged->at(static_cast<std::size_t>(fitted - fits->fits.begin())) *
         (facts.force / facts.height);
     const auto model = continuum::make_model(choice.name, filled_settings(choice, facts));
     Evaluation out;
     Eigen::Index row = 0;
     for (const PointSet& s : sets) {
-      if (s.smoothing == Smoothing::none) {
-        out.stresses.push_back(model->stress(s.points));
-        continue;
-      }
-      out.stresses.emplace_back(all.middleRows(row, s.points.rows()));
-      row += s.points.rows();
+      const bool as_it_is = s.smoothing == Smoothing::none;
+      out.stresses.push_back(as_it_is ? model->stress(s.points)
+                                      : Eigen::MatrixXd(all.middleRows(row, s.points.rows())));
+      row += as_it_is ? 0 : s.points.rows();
     }
     out.figures = model->figures();
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -120,7 +151,7 @@ Report page_of(const StudyResult& result, const Realization* first, const Ensemb
   const Observations& seen = fits.observed;
   out.title = title_of(result.value);
   out.subtitle = fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}",
-                             seen.unit * seen.height, seen.height, seen.data.realizations(),
+                             seen.scale.unit * seen.scale.h, seen.scale.h, seen.data.realizations(),
                              seen.data.realizations() == 1 ? "" : "s");
   add_verdict(out, fits.judgement);
   for (Section& s : fit_pictures(fits)) out.sections.push_back(std::move(s));
@@ -208,7 +239,7 @@ Study point_load_verdict_study() {
   out.models_optional = true;
   out.make_run = make_run;
   out.foresee = foresee;
-  out.left_unused = unused_layers;
+  out.left_unused = [](const Case& value) { return unused_runs(value, kStates, kStudy); };
   out.analyse = analyse;
   return out;
 }

@@ -107,8 +107,8 @@ TEST(AverageSpace, RingsAboutTheAxisOfAFrame) {
   EXPECT_EQ(f.points.rows(), 12);
   EXPECT_EQ(f.points(0, 0), 0);
   EXPECT_NEAR(f.points(3, 0), test::kBoxSide / 2, 1e-12);
-  EXPECT_EQ(f.attributes.at("frame"),
-            "models: load at (0, 0, 0), surface z = 0, rings: radius, height");
+  EXPECT_EQ(f.word("frame"), "layer");
+  EXPECT_TRUE(f.is_of_rings());
   EXPECT_LT(f.find("sigma_zz")->value[0], -300);
   EXPECT_LT(f.find("sigma_tt")->value[1], 0);
   EXPECT_NE(f.find("fabric_rz"), nullptr);
@@ -144,9 +144,9 @@ TEST(AverageSpace, HeapsAreConesInUnitsOfTheirHeight) {
                              " --frame heap --grid 9x9x5 --width 0.02 -o " + (folder / "f.h5"));
   ASSERT_EQ(out.code, 0) << out.err;
   const Field f = read_field(folder / "f.h5", "average");
-  EXPECT_THAT(f.attributes.at("frame"), HasSubstr("heap: apex at (0, 0, 0)"));
-  EXPECT_NEAR(std::stod(f.attributes.at("h")), 12 * d, d);
-  EXPECT_NEAR(std::stod(f.attributes.at("left_deg")), 31, 2);
+  EXPECT_TRUE(f.is_over_height());
+  EXPECT_NEAR(f.number("h"), 12 * d, d);
+  EXPECT_NEAR(f.number("left_deg"), 31, 2);
   EXPECT_EQ(f.points(0, 2), -1);
   EXPECT_GT(f.find("volume_fraction")->value[40 + 81], 0.45);  // inside, above the floor
   EXPECT_TRUE(std::isnan(f.find("volume_fraction")->value[81 * 4]));
@@ -231,11 +231,11 @@ Field half_space(bool rings, double factor) {
       f.add(names[c], "N/m2").value = factor * stress.col(static_cast<Eigen::Index>(c));
   f.attributes = {{"method", "coarse_graining"},
                   {"kernel", "lucy"},
-                  {"width", "0.01"},
-                  {"h", fmt::format("{}", h)},
-                  {"F", fmt::format("{}", load)},
-                  {"frame", std::string("models: load at (0, 0, 0), surface z = 0") +
-                                (rings ? ", rings: radius, height" : "")}};
+                  {"width", 0.01},
+                  {"h", h},
+                  {"F", load},
+                  {"frame", "layer"}};
+  if (rings) f.attributes["rings"] = 1.0;
   return f;
 }
 

@@ -51,10 +51,10 @@ TEST(Average, MethodsCutsAndQuantities) {
     EXPECT_THAT(out.out, HasSubstr("average: 14 points, 1 realization"));
     const Field field = field_of(folder / "f.h5");
     EXPECT_EQ(field.points.rows(), 14);
-    EXPECT_EQ(field.attributes.at("method"), method);
+    EXPECT_EQ(field.word("method"), method);
     EXPECT_NE(field.find("fabric_xy"), nullptr);
     EXPECT_EQ(field.find("density"), nullptr);
-    EXPECT_NEAR(field.points(13, 1), -std::stod(field.attributes.at("h")) / 2, 1e-12);
+    EXPECT_NEAR(field.points(13, 1), -field.number("h") / 2, 1e-12);
   }
 }
 
@@ -109,7 +109,7 @@ TEST(Average, HeapsAverageInScaledCoordinates) {
   const Field field = field_of(folder / "f.h5");
   EXPECT_EQ(field.nx, 21);
   EXPECT_EQ(field.points(0, 1), -1);
-  EXPECT_THAT(field.attributes.at("frame"), HasSubstr("heap"));
+  EXPECT_TRUE(field.is_of_heap());
   EXPECT_EQ(unit_of_points(folder / "f.h5"), "h");
   ASSERT_EQ(program("average" + files + " --grid 21x11 --width 0.02 -o " + (folder / "p.h5")).code,
             0);

@@ -9,6 +9,7 @@
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/base.h"
 #include "coupling/averaging/kernel.h"
+#include "dem/snapshot/contact_changes.h"
 #include "tests/coupling/averaging_scene.h"
 
 namespace grainfield::coupling {
@@ -134,15 +135,15 @@ TEST(Averaging, FloorAndWallsCarryTheWeight) {
   for (bool rough : {false, true}) {
     const dem::Snapshot s = layer(4, 12, 6, rough);
     const double w = test::weight(s);
-    EXPECT_NEAR(base_force(s).y() + side_wall_force(s).y(), w, 1e-9 * w);
-    EXPECT_NEAR(base_force(s).x() + side_wall_force(s).x(), 0, 1e-9 * w);
+    EXPECT_NEAR(dem::base_force(s).y() + side_wall_force(s).y(), w, 1e-9 * w);
+    EXPECT_NEAR(dem::base_force(s).x() + side_wall_force(s).x(), 0, 1e-9 * w);
     const auto kernel = make_kernel("lucy", 0.01);
     const int n = 4001;
     const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, -0.05, 0.17);
     const Field base = base_profile(s, x, *kernel);
     const double step = 0.22 / (n - 1);
-    EXPECT_NEAR(-base.find("sigma_yy")->value.sum() * step, base_force(s).y(), 1e-6 * w);
-    EXPECT_NEAR(-base.find("sigma_xy")->value.sum() * step, base_force(s).x(), 1e-6 * w);
+    EXPECT_NEAR(-base.find("sigma_yy")->value.sum() * step, dem::base_force(s).y(), 1e-6 * w);
+    EXPECT_NEAR(-base.find("sigma_xy")->value.sum() * step, dem::base_force(s).x(), 1e-6 * w);
   }
 }
 

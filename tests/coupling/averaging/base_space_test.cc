@@ -5,9 +5,13 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <vector>
 
 #include "coupling/averaging/average.h"
+#include "coupling/averaging/base.h"
 #include "coupling/averaging/kernel.h"
+#include "dem/snapshot/contact_changes.h"
 #include "tests/coupling/averaging_scene.h"
 
 namespace grainfield::coupling {
@@ -87,6 +91,48 @@ TEST(BaseInSpace, CarriesEveryComponentOfTheForce) {
       EXPECT_LT((total(s, *kernel) + kForce).norm(), rounding * kForce.norm()) << name;
     }
   }
+}
+
+// The smeared stress, its supports and the force of the base are of the same contacts, in all three
+// components: those of free grains with the floor or with fixed grains.
+TEST(BaseInSpace, ForceIsTheSumOverTheContactsWithTheBase) {
+  const Vector3d at(0.1 * d, 0, d / 2);
+  for (dem::Snapshot s : {on_a_floor(at), on_a_sphere(at, false), on_a_sphere(at, true)}) {
+    test::add_wall(s, "left", {0, 0, 0}, {1, 0, 0});
+    dem::Contact beside = s.contacts.front();
+    beside.i = 0;
+    beside.j = -static_cast<int>(s.walls.size());
+    beside.force = {7, 8, 9};
+    s.contacts.push_back(beside);
+    if (s.walls.front().name == "floor") {  // a fixed sphere on the floor carries nothing
+      s.grains.push_back(sphere(1, at + Vector3d(d, 0, 0)));
+      s.grains.back().fixed = true;
+      beside.i = 1;
+      beside.j = -1;
+      s.contacts.push_back(beside);
+    }
+    const std::vector<BaseSupport> supports = base_supports(s);
+    ASSERT_EQ(supports.size(), 1u);
+    EXPECT_EQ(supports.front().force, kForce);
+    EXPECT_EQ(dem::base_force(s), kForce);
+  }
+}
+
+// Upwards is z, whatever the load does along x and y.
+TEST(BaseInSpace, ShareOfTheLoadIsThatOfTheVerticalForces) {
+  const dem::Snapshot before = on_a_floor({0, 0, d / 2});
+  dem::Snapshot after = before;
+  after.loaded_grain = 0;
+  after.applied_force = {1, 3, -5};
+  after.contacts.front().force += Vector3d(-1, -3, 4.5);
+  EXPECT_NEAR(total_over_load(before, after), 0.9, 1e-15);
+  EXPECT_TRUE(std::isnan(total_over_load(before, before)));
+}
+
+TEST(BaseInSpace, IsNoLine) {
+  const Eigen::VectorXd x = Eigen::VectorXd::Zero(1);
+  EXPECT_THROW(base_profile(on_a_floor({0, 0, d / 2}), x, *make_kernel("lucy", d)),
+               std::invalid_argument);
 }
 
 // Beside either side of a periodic cell the other side is seen.

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "coupling/judge/words.h"
+#include "coupling/observe/lines.h"
 #include "tests/coupling/compare_scene.h"
 
 namespace grainfield::coupling {
@@ -395,6 +396,30 @@ TEST(Compare, AProfileOfTooFewValuesHasNoShape) {
   const Comparison c = compare(s.profiles, s.models, scale_of_load(1, 1), 1);
   EXPECT_TRUE(std::isnan(c.shapes[0].peak));
   EXPECT_TRUE(std::isfinite(c.results[0].overall.rel_l2));
+}
+
+// Without a load stresses keep their own unit, which is another one in space.
+TEST(Compare, AFieldAtRestHasTheUnitOfItsDimension) {
+  for (const int dim : {2, 3}) {
+    Field field;
+    field.points = Eigen::MatrixXd::Zero(5, dim);
+    field.points.col(0) = VectorXd::LinSpaced(5, -0.1, 0.1);
+    field.points.col(dim - 1).setConstant(-0.02);
+    field.add(dim == 2 ? "sigma_yy" : "sigma_zz", dim == 2 ? "N/m" : "Pa").value =
+        VectorXd::Constant(5, -3);
+    field.attributes = {{"method", "coarse_graining"},
+                        {"kernel", "lucy"},
+                        {"width", 0.01},
+                        {"h", 0.05},
+                        {"frame", "layer"}};
+    const Observations seen = observe_fields({{"average", field}}, {}, "fields.h5");
+    EXPECT_EQ(seen.specimen, Specimen::rest);
+    EXPECT_EQ(seen.scale.stress, dim == 2 ? "N/m" : "Pa");
+    ASSERT_EQ(seen.lines.size(), 1u);
+    EXPECT_EQ(seen.lines.front().profile.mean, VectorXd::Constant(5, 3));
+    EXPECT_EQ(seen.lines.front().profile.unit, seen.scale.stress);
+    EXPECT_EQ(seen.lines.front().profile.depth, 0.02);
+  }
 }
 
 TEST(Compare, Families) {

@@ -224,8 +224,8 @@ TEST(FitCommand, CopiesOfAHeapAreNoRealizations) {
     column.samples.col(2) = Eigen::VectorXd(column.samples.col(0));
   }
   for (const char* name : {"heap.h", "rho_g_h", "left_deg", "right_deg"}) {
-    std::string& each = twice.attributes.at(name);
-    each += "," + each.substr(0, each.find(','));
+    auto& each = std::get<std::vector<double>>(twice.attributes.at(name));
+    each.push_back(each.front());
   }
   twice.realizations = 3;
   testing::fs::remove(folder / "f.h5");

@@ -9,7 +9,7 @@
 #include "coupling/fit/fit_report.h"
 #include "coupling/fit/fit_tables.h"
 #include "coupling/fit/fits.h"
-#include "coupling/fit/setup.h"
+#include "coupling/observe/setup.h"
 #include "tests/coupling/stressed_heap.h"
 
 namespace grainfield::coupling {

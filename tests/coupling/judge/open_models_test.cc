@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "coupling/fit/layer_models.h"
-#include "coupling/fit/observations.h"
+#include "coupling/observe/observations.h"
 #include "coupling/output/tables.h"
 #include "tests/coupling/fit_scene.h"
 #include "tests/coupling/open_models_scene.h"

@@ -36,7 +36,7 @@ TEST(StrainCommand, GivesAnAffineStrainBack) {
     EXPECT_THAT(run.out, HasSubstr("strain: 45 points, measure " + measure));
     const Field field = read_field(out, "strain");
     EXPECT_EQ(field.nx, 9);
-    EXPECT_EQ(field.attributes.at("measure"), measure);
+    EXPECT_EQ(field.word("measure"), measure);
     int values = 0;
     for (Eigen::Index k = 0; k < field.points.rows(); ++k) {
       if (!std::isfinite(field.find("strain_xx")->value[k])) continue;

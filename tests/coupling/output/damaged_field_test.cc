@@ -19,7 +19,8 @@ Field sample() {
   field.nx = 4;
   field.ny = 3;
   field.realizations = 3;
-  field.attributes = {{"method", "coarse_graining"}, {"h", "0.3"}};
+  field.attributes = {
+      {"method", "coarse_graining"}, {"h", 0.3}, {"left_deg", std::vector<double>{25, 26, 27}}};
   for (const char* name : {"sigma_xx", "sigma_yy"}) {
     Column& column = field.add(name, "N/m");
     column.value = Eigen::VectorXd::Random(12);
@@ -43,7 +44,7 @@ std::string bits_of(const std::string& file) {
     for (const int n : {field.nx, field.ny, field.realizations}) w.put(n);
     for (const auto& [key, value] : field.attributes) {
       w.put(key);
-      w.put(value);
+      w.put(attribute_text(value));
     }
     for (const Column& column : field.columns) {
       w.put(column.name);

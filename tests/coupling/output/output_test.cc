@@ -66,7 +66,7 @@ Field sample(bool grid) {
   }
   f.realizations = 4;
   f.attributes = {{"kernel", "lucy"}, {"what", "a <test> & \"more\""},
-                  {"h", "0.25"},      {"left_deg", "25.5,26"},
+                  {"h", 0.25},        {"left_deg", std::vector<double>{25.5, 26}},
                   {"nothing", "nan"}, {"padded", "0.10"}};
   Column& c = f.add("sigma_yy", "N/m");
   c.value << 1, 2, NAN, 4, 5, 1.0 / 3;
@@ -187,7 +187,7 @@ TEST_F(Output, TextsOfVariableLengthAreRead) {
     replace("attribute.kernel", "from Python");
   }
   const Field f = read_field(at("f.h5"), "map");
-  EXPECT_EQ(f.attributes.at("kernel"), "from Python");
+  EXPECT_EQ(f.word("kernel"), "from Python");
   EXPECT_EQ(f.columns.size(), sample(true).columns.size());
 }
 
@@ -196,6 +196,35 @@ TEST_F(Output, NumbersAmongAttributesAreNumbers) {
   const dem::hdf5::Handle file = dem::hdf5::open_for_reading(at("f.h5"));
   EXPECT_EQ(dem::hdf5::number_attributes(dem::hdf5::open_group(file, "map")),
             (std::vector<std::string>{"attribute.h", "dim", "nx", "ny", "realizations"}));
+}
+
+// Files of format 1: a list of numbers is a text, a frame a sentence.
+TEST_F(Output, OldAttributesHaveTheSameNumbers) {
+  write_fields(at("f.h5"), {{"map", sample(true)}});
+  {
+    namespace h5 = dem::hdf5;
+    const h5::Handle file = h5::open_for_adding(at("f.h5"));
+    const h5::Handle group = h5::open_group(file, "map");
+    h5::write_attribute(group, "attribute.heap.h", "0.1,0.30000000000000004");
+    h5::write_attribute(group, "attribute.right_deg", "25.5, nan");
+    h5::write_attribute(group, "attribute.rho_g_h", "12.5");
+    h5::write_attribute(group, "attribute.frame",
+                        "heap: apex at (0, 0), floor y = -h; every pile scaled by its own height");
+  }
+  const Field f = read_field(at("f.h5"), "map");
+  EXPECT_EQ(f.attributes.at("heap.h"), Attribute(std::vector<double>{0.1, 0.1 + 0.2}));
+  EXPECT_TRUE(std::isnan(f.number("right_deg")));
+  EXPECT_EQ(f.attributes.at("rho_g_h"), Attribute(12.5));
+  EXPECT_TRUE(f.is_of_heap());
+  EXPECT_FALSE(f.is_over_height());
+  EXPECT_FALSE(f.is_of_rings());
+  Attributes of_rings{
+      {"frame", "heap: apex at (0, 0, 0), lengths over its height h, rings: radius"}};
+  type_attributes(of_rings);
+  EXPECT_EQ(of_rings, (Attributes{{"frame", "heap"}, {"rings", 1.0}}));
+  Attributes of_layer{{"frame", "models: load at (0, 0), surface y = 0"}, {"width", "0.01 m"}};
+  type_attributes(of_layer);
+  EXPECT_EQ(of_layer, (Attributes{{"frame", "layer"}, {"width", "0.01 m"}}));
 }
 
 TEST_F(Output, FieldReaderNamesWhatIsWrong) {

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <vector>
 
-#include "coupling/averaging/base_space.h"
+#include "coupling/averaging/base.h"
 #include "coupling/averaging/cone.h"
 #include "coupling/heap/cone_windows.h"
 #include "coupling/output/field_io.h"

@@ -132,7 +132,7 @@ TEST(PileAnalysis, PicturesEndWithTheHeap) {
   ASSERT_NE(pile_frame(pieces).no_heap(1), "");
   const Case value = pile_case();
   const auto reach = [&](const std::vector<dem::Snapshot>& heaps) {
-    return PileEnsemble(value, files_of(folder, heaps), 1).x().maxCoeff();
+    return PileEnsemble(value, files_of(folder, heaps), 1).x.maxCoeff();
   };
   EXPECT_EQ(reach({heap, pieces}), reach({heap}));
   const PileFrame frame = pile_frame(heap);

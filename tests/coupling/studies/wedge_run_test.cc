@@ -130,7 +130,7 @@ TEST(WedgeRun, HeapsBesideTheClosedWedges) {
   EXPECT_THAT(file("heaps.csv"), HasSubstr("associated;0."));
 }
 
-// docs/cases/wedge-elastoplastic.md: the history moves the pressure by one per cent, soft
+// docs/cases/wedges.md: the history moves the pressure by one per cent, soft
 // ground by twice that, and none makes a dip.
 TEST(WedgeRun, HistoryHardlyMovesThePressure) {
   std::vector<std::string> sets;

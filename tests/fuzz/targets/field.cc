@@ -1,5 +1,5 @@
 // Fields in HDF5, up to the lines that `compare` and `fit` take from them.
-#include "coupling/files/field_lines.h"
+#include "coupling/observe/lines.h"
 #include "coupling/output/field_io.h"
 #include "tests/fuzz/target.h"
 
@@ -15,7 +15,7 @@ void fuzz_field(std::string_view bytes) {
       const std::string where = file.path() + ":/" + name;
       const coupling::Field field = coupling::read_field(file.path(), name);
       const coupling::LineOptions lines;
-      coupling::lines_of(coupling::scene_field(field, name, lines, where), lines, where);
+      coupling::observe_fields({{name, field}}, lines, where);
     });
   }
 }

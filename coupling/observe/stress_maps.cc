@@ -1,4 +1,4 @@
-#include "coupling/fit/stress_maps.h"
+#include "coupling/observe/stress_maps.h"
 
 #include <fmt/format.h>
 

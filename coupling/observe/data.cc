@@ -1,4 +1,4 @@
-#include "coupling/fit/data.h"
+#include "coupling/observe/data.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "coupling/fit/observations.h"
+#include "coupling/observe/observations.h"
 
 #include <fmt/format.h>
 
@@ -20,6 +20,7 @@ void keep_complete_rows(const FitData& all, const std::string& key, const std::s
                     out.specimen == Specimen::heap ? "heaps" : "layers", kLeastRows, advice));
   }
   out.data = rows_of(all, kept);
+  out.realizations = out.data.realizations();
 }
 
 }  // namespace grainfield::coupling

@@ -9,9 +9,9 @@
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/kernel.h"
-#include "coupling/fit/heap_rows.h"
 #include "coupling/heap/heap_field.h"
 #include "coupling/import/packing_warnings.h"
+#include "coupling/observe/heap_rows.h"
 #include "coupling/run/realization_file.h"
 #include "dem/snapshot/added_forces_mark.h"
 
@@ -41,7 +41,7 @@ PileFrame frame_of(const HeapReader& heaps, std::size_t k, PackingWarnings& warn
       throw std::invalid_argument(text);
     }
     warnings.add(heaps.name(k), check);
-    warnings.add(kAddedForcesKind, heaps.name(k), dem::added_forces_note(heap.attributes));
+    warnings.add(kAddedForcesKind, heaps.name(k), dem::added_forces_note(heap));
     PileFrame frame = pile_frame(heap);
     if (!(frame.pressure() > 0)) {
       throw std::invalid_argument("has no weight: gravity, masses or heights are 0");
@@ -100,7 +100,7 @@ Observations observe_heaps(const FitSetup& setup, const HeapReader& all_heaps, i
   out.facts = facts_of(setup, slopes, *out.kernel);
 
   std::vector<Eigen::Vector2d> places;
-  std::vector<int> level;
+  HeapPlaces at;
   for (const double share : setup.heights) {
     const double depth = 1 - share, reach = kRange * out.width / height;
     const double from = reach - depth / slopes.left(), to = depth / slopes.right() - reach;
@@ -110,33 +110,33 @@ Observations observe_heaps(const FitSetup& setup, const HeapReader& all_heaps, i
     const double middle = (from + to) / 2, half = (to - from) / 2;
     for (int k = 0; k < n; ++k) {
       places.emplace_back(n > 1 ? middle + half * (2.0 * k / (n - 1) - 1) : middle, -depth);
-      level.push_back(static_cast<int>(out.data.levels.size()) - 1);
+      at.level.push_back(static_cast<int>(out.data.levels.size()) - 1);
     }
   }
   // Lines of the fit and the page's grid in one averaging.
   out.maps = heap_map_grid(slopes);
-  const auto n = static_cast<Eigen::Index>(places.size()), cells = out.maps.points.rows();
-  Eigen::MatrixXd points(n, 2), both(n + cells, 2);
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    points.row(static_cast<Eigen::Index>(k)) = places[k].transpose();
+  const auto n = static_cast<Eigen::Index>(places.size());
+  Field field;
+  field.points.resize(n + out.maps.points.rows(), 2);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    field.points.row(k) = places[static_cast<std::size_t>(k)].transpose();
+    at.chosen.push_back(k);
   }
-  both << points, out.maps.points;
-  const auto count_of = static_cast<Eigen::Index>(heaps.count);
-  Eigen::MatrixXd all(3 * n, count_of), grid(3 * cells, count_of);
+  field.points.bottomRows(out.maps.points.rows()) = out.maps.points;
+  at.map_from = n;
+  field.realizations = static_cast<int>(heaps.count);
+  for (const std::string& name : kPlaneStress) {
+    field.add(name, "N/m").samples.resize(field.points.rows(), field.realizations);
+  }
   for (std::size_t r = 0; r < heaps.count; ++r) {
     const PileFrame& frame = out.frames[r];
-    const Field field = average(heaps.read(r), frame.to_packing(both), options);
-    for (std::size_t c = 0; c < kPlaneStress.size(); ++c) {
-      const auto component = static_cast<Eigen::Index>(c), heap = static_cast<Eigen::Index>(r);
-      const Eigen::VectorXd values = field.find(kPlaneStress[c])->value / frame.pressure();
-      all.block(component * n, heap, n, 1) = values.head(n);
-      grid.block(component * cells, heap, cells, 1) = values.tail(cells);
+    const Field one = average(heaps.read(r), frame.to_packing(field.points), options);
+    for (Column& column : field.columns) {
+      column.samples.col(static_cast<Eigen::Index>(r)) = one.find(column.name)->value;
     }
+    at.pressure.push_back(frame.pressure());
   }
-  drop_copies(all, grid, heaps.name, out);
-  fill_heap_maps(grid, out.facts, out.width / height, out.maps);
-  set_mean_heap(out);
-  keep_rows(setup, points, level, all, out);
+  take_values(setup, field, at, heaps.name, out);
   return out;
 }
 

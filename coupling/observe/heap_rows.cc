@@ -1,11 +1,13 @@
-#include "coupling/fit/heap_rows.h"
+#include "coupling/observe/heap_rows.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 #include "continuum/constants.h"
@@ -144,23 +146,6 @@ StressMaps heap_map_grid(const HeapSlopes& slopes) {
   return out;
 }
 
-void fill_heap_maps(const Eigen::MatrixXd& samples, const HeapFacts& facts, double margin,
-                    StressMaps& maps) {
-  average_maps(
-      samples,
-      [&](double x, double y) { return depth_below_flank(facts, x, y) >= 0 && 1 + y >= margin; },
-      maps);
-}
-
-void set_mean_heap(Observations& out) {
-  const double n = static_cast<double>(out.frames.size());
-  out.height = out.unit = 0;
-  for (const PileFrame& f : out.frames) {
-    out.height += f.height / n;
-    out.unit += f.pressure() / n;
-  }
-}
-
 void warn_of_low_heights(const std::vector<double>& heights, double height, double width,
                          Observations& out) {
   std::vector<std::string> low;
@@ -239,6 +224,9 @@ void warn_of_set_slopes(const FitSetup& setup, Observations& out) {
   compare("right_deg", setup.right_deg, &PileFrame::repose_right_deg);
 }
 
+namespace {
+
+// `all`, `grid`: values x packings.
 void drop_copies(Eigen::MatrixXd& all, Eigen::MatrixXd& grid,
                  const std::function<std::string(std::size_t)>& name, Observations& out) {
   std::vector<Eigen::Index> kept;
@@ -266,7 +254,61 @@ void drop_copies(Eigen::MatrixXd& all, Eigen::MatrixXd& grid,
                   : fmt::format(" (likewise {} other{})", copies - 1, copies == 2 ? "" : "s")));
 }
 
-namespace {
+// average_maps without what is above the mean flanks, and nearer to the floor than the averaging
+// width: there the average mixes in what lies below the floor.
+void fill_heap_maps(const Eigen::MatrixXd& samples, double margin, Observations& out) {
+  average_maps(
+      samples,
+      [&](double x, double y) {
+        return depth_below_flank(out.facts, x, y) >= 0 && 1 + y >= margin;
+      },
+      out.maps);
+}
+
+void set_mean_heap(Observations& out) {
+  const double n = static_cast<double>(out.frames.size());
+  double height = 0, pressure = 0;
+  for (const PileFrame& f : out.frames) {
+    height += f.height / n;
+    pressure += f.pressure() / n;
+  }
+  out.scale = scale_of_heaps(height, pressure, scaled_alone(static_cast<int>(out.frames.size())));
+}
+
+// Of one field: values that have no error are left out, said with their places, unless none has
+// one. Whether errors are left, finite where `all` is. Rows: components x places.
+bool pair_with_errors(const FitSetup& setup, const Eigen::MatrixXd& places, Eigen::MatrixXd& all,
+                      Eigen::MatrixXd& errors, Observations& out) {
+  constexpr std::size_t most_named = 5;
+  const Eigen::Index n = places.rows();
+  std::vector<Eigen::Index> with, without;
+  for (Eigen::Index row = 0; row < all.rows(); ++row) {
+    const std::string& name = kPlaneStress[static_cast<std::size_t>(row / n)];
+    const bool wanted =
+        std::find(setup.components.begin(), setup.components.end(), name) != setup.components.end();
+    if (!std::isfinite(all(row, 0))) errors(row, 0) = std::nan("");
+    if (!wanted || !std::isfinite(all(row, 0))) continue;
+    (errors(row, 0) > 0 ? with : without).push_back(row);
+  }
+  if (with.empty()) return false;
+  std::vector<std::string> names;
+  for (const Eigen::Index row : without) {
+    all(row, 0) = errors(row, 0) = std::nan("");
+    if (names.size() < most_named) {
+      names.push_back(fmt::format("{} at x = {:.3g} h",
+                                  kPlaneStress[static_cast<std::size_t>(row / n)],
+                                  places(row % n, 0)));
+    }
+  }
+  out.without_error = without.size();
+  if (!without.empty()) {
+    out.warnings.push_back(fmt::format("{} of {} values have no error and are left out: {}{}",
+                                       without.size(), with.size() + without.size(),
+                                       fmt::join(names, ", "),
+                                       without.size() > names.size() ? ", ..." : ""));
+  }
+  return true;
+}
 
 // What helps where too few values are left.
 std::string advice_on_rows(const Observations& out) {
@@ -280,8 +322,8 @@ std::string advice_on_rows(const Observations& out) {
                       : "choose lower heights, a smaller fit.width_diameters or larger piles";
 }
 
-}  // namespace
-
+// Chooses the components, and of these the complete rows. `all`: values of sigma_xx on all points,
+// then sigma_yy, sigma_xy; columns realizations.
 void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::vector<int>& level,
                const Eigen::MatrixXd& all, Observations& out) {
   const Eigen::Index n = points.rows();
@@ -300,6 +342,55 @@ void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::
     chosen.level.insert(chosen.level.end(), level.begin(), level.end());
   }
   keep_complete_rows(chosen, "fit.heights", advice_on_rows(out), out);
+}
+
+// The stresses one after the other on these points, over the pressure; nan: not in the field.
+Eigen::MatrixXd stacked(const Field& field, const std::vector<Eigen::Index>& at,
+                        const std::vector<double>& pressure) {
+  const auto n = static_cast<Eigen::Index>(at.size()), count = std::ssize(pressure);
+  Eigen::MatrixXd out = Eigen::MatrixXd::Constant(3 * n, count, std::nan(""));
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    const Column* column = field.find(kPlaneStress[static_cast<std::size_t>(c)]);
+    if (column == nullptr) continue;
+    for (Eigen::Index r = 0; r < count; ++r) {
+      const bool single = column->samples.cols() == count;
+      const Eigen::VectorXd values =
+          single ? Eigen::VectorXd(column->samples(at, r)) : Eigen::VectorXd(column->value(at));
+      out.block(c * n, r, n, 1) = values / pressure[static_cast<std::size_t>(r)];
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void take_values(const FitSetup& setup, const Field& field, const HeapPlaces& at,
+                 const std::function<std::string(std::size_t)>& name, Observations& out) {
+  std::vector<Eigen::Index> of_map(static_cast<std::size_t>(field.points.rows() - at.map_from));
+  std::iota(of_map.begin(), of_map.end(), at.map_from);
+  Eigen::MatrixXd all = stacked(field, at.chosen, at.pressure);
+  Eigen::MatrixXd grid = stacked(field, of_map, at.pressure);
+  drop_copies(all, grid, name, out);
+  set_mean_heap(out);
+  if (!of_map.empty()) fill_heap_maps(grid, out.width / out.scale.h, out);
+  const Eigen::MatrixXd places = field.points(at.chosen, Eigen::all);
+  Eigen::MatrixXd errors = Eigen::MatrixXd::Constant(all.rows(), 1, std::nan(""));
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Column* column = field.find(kPlaneStress[c]);
+    if (column == nullptr || column->error.size() == 0) continue;
+    errors.middleRows(static_cast<Eigen::Index>(c) * places.rows(), places.rows()) =
+        column->error(at.chosen) / at.pressure.front();
+  }
+  const bool with_errors =
+      at.pressure.size() == 1 && pair_with_errors(setup, places, all, errors, out);
+  keep_rows(setup, places, at.level, all, out);
+  if (!with_errors) return;
+  Observations beside;
+  beside.data.levels = out.data.levels;
+  beside.measured = out.measured;
+  beside.without_error = out.without_error;
+  keep_rows(setup, places, at.level, errors, beside);
+  out.data.error = beside.data.samples.col(0);
 }
 
 }  // namespace grainfield::coupling

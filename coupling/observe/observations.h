@@ -1,6 +1,6 @@
-// What is fitted and how it was seen: stresses of an ensemble of heaps on horizontal lines, from
-// the grains or from a field that was averaged before, or responses of an ensemble of layers to a
-// point load.
+// What is judged and how it was seen: stresses of an ensemble of heaps, of layers under a load on
+// one point, or of anything else whose frame is known; in the plane or in space; from grains, from
+// a field file or from a laboratory's table. Models are seen through the same places and kernels.
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -11,38 +11,66 @@
 #include "continuum/constants.h"
 #include "coupling/averaging/kernel.h"
 #include "coupling/case/case.h"
+#include "coupling/compare/compare.h"
 #include "coupling/field.h"
-#include "coupling/fit/data.h"
-#include "coupling/fit/models.h"
-#include "coupling/fit/setup.h"
-#include "coupling/fit/stress_maps.h"
 #include "coupling/heap/pile_frame.h"
+#include "coupling/models/models.h"
+#include "coupling/observe/data.h"
+#include "coupling/observe/heap_facts.h"
+#include "coupling/observe/setup.h"
+#include "coupling/observe/stress_maps.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
 
-enum class Specimen { heap, layer };
+enum class Specimen {
+  heap,   ///< under its weight: stresses over rho g h
+  layer,  ///< under a load on one point: over F/h, in space F/h^2
+  rest,   ///< a layer at rest, or any other field: 1 N/m (in space 1 Pa)
+};
 
-/// Lengths over h. Stresses of heaps over rho g h of each heap, apex at (0, 0), inside is y < 0; of
-/// layers loaded - unloaded over F/h, load at (0, 0), base y = -1, working unit F over the value's
-/// depth, which the peak of every model falls off with.
+/// One stress along one horizontal line: m and N/m (in space Pa), models' frame.
+struct ObservedLine {
+  Profile profile;
+  PointSet places;                       ///< where a model is evaluated for it, and through what
+  std::shared_ptr<const Kernel> kernel;  ///< of the places
+  int component = 1;  ///< of the models' stresses: place in kPlaneStress, in space kSpaceStress
+  double sign = -1;   ///< profile over stress: pressures are positive, shear keeps its sign
+  /// The places are radii from 0, which the profile has on both sides; pictures may need more of
+  /// them.
+  bool both_sides = false;
+};
+
 struct Observations {
   Specimen specimen = Specimen::heap;
+  bool measured = false;  ///< in a laboratory: texts speak of no grains
+  int realizations = 1;
+  Scale scale;       ///< length h, m: mean over the realizations; unit of stresses
+  RunFacts told;     ///< what models are told of the specimen; its `dim` is that of the stresses
+  std::string note;  ///< what the reader must know; may be empty
+  std::vector<std::string> warnings;  ///< what makes the constants doubtful, a sentence each
+
+  // What models as they are given are compared with.
+  std::vector<ObservedLine> lines;
+  Field map;                      ///< further places where they are given as they are; may be empty
+  double apex = 0;                ///< m, of the models' heap above the origin of lines and map
+  std::vector<std::string> seen;  ///< how each field was averaged, for people
+
+  // What models with free constants are fitted to: lengths over h, stresses over the unit of each
+  // realization. Heaps: apex at (0, 0), inside y < 0. Layers: loaded - unloaded, load at (0, 0),
+  // base y = -1; a value counts in F over its depth, which the peak of every model falls off with.
   FitData data;
   std::shared_ptr<const Kernel> kernel;  ///< of the averaging, lengths over h
+  double width = 0;                      ///< of this kernel, m
   StressMaps maps;                       ///< empty: of a field that is no grid
-  double height = 0;                     ///< h, m: mean over the realizations
-  double unit = 0;                       ///< of stresses, N/m: mean rho g h, or F/h
-  double width = 0;                      ///< of the averaging kernel, m
-  bool measured = false;                 ///< in a laboratory: texts speak of no grains
   int left_out = 0;                      ///< values that some realization does not have
   std::size_t without_error = 0;         ///< values left out of one field beside some with errors
-  std::string note;                      ///< what the reader must know; may be empty
-  std::vector<std::string> warnings;     ///< what makes the constants doubtful, a sentence each
-  // Of heaps.
-  HeapFacts facts;                  ///< in the same units: rho_g = height = 1
-  std::vector<PileFrame> frames;    ///< one per realization
-  double weight_over_wedge = kNan;  ///< mean over the heaps (PileFrame); nan: not known
+  HeapFacts facts;                       ///< in the same units: rho_g = height = 1
+  std::vector<PileFrame> frames;         ///< of heaps, one per realization
+  double weight_over_wedge = kNan;       ///< mean over the heaps (PileFrame); nan: not known
+
+  /// Height of the models' heap over that of the grains.
+  double spanned() const { return scale.h > 0 ? 1 + apex / scale.h : 1; }
 };
 
 /// Moves the rows of `all` that are finite in every realization into out.data and counts the

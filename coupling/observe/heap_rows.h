@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/fit/observations.h"
+#include "coupling/observe/observations.h"
 
 namespace grainfield::coupling {
 
@@ -29,19 +29,11 @@ HeapFacts facts_of(const FitSetup& setup, const HeapSlopes& slopes, const Kernel
 /// Empty maps on a grid over a heap with these slopes, from foot to foot.
 StressMaps heap_map_grid(const HeapSlopes& slopes);
 
-/// average_maps without what is above the mean flanks, and nearer to the floor than `margin` over h
-/// (the averaging width: there the average mixes in what lies below the floor).
-void fill_heap_maps(const Eigen::MatrixXd& samples, const HeapFacts& facts, double margin,
-                    StressMaps& maps);
-
 /// Depth of a point below the mean flank, over h.
 double depth_below_flank(const HeapFacts& facts, double x, double y);
 
 /// Sets out.weight_over_wedge of out.frames; where the heaps are no wedges a warning says so.
 void warn_of_round_tops(Observations& out);
-
-/// Mean height and unit of stress of out.frames.
-void set_mean_heap(Observations& out);
 
 /// Adds a warning for heights nearer to the floor than the averaging width `width`, m, of heaps
 /// that are at least `height` m high: there the average mixes in the stress continued below the
@@ -60,16 +52,18 @@ std::vector<std::size_t> kept_realizations(std::size_t count, const std::vector<
 /// Adds a warning for slopes of the setup that are more than 5 degrees off the heaps' own.
 void warn_of_set_slopes(const FitSetup& setup, Observations& out);
 
-/// Drops packings that are copies of an earlier one (all values equal but for rounding), with a
-/// warning: they are no independent realizations. `all`, `grid`: values x packings, and the frames
-/// in `out`; `name` of a packing, for the warning.
-void drop_copies(Eigen::MatrixXd& all, Eigen::MatrixXd& grid,
+/// Where a field of heaps is fitted.
+struct HeapPlaces {
+  std::vector<Eigen::Index> chosen;  ///< of its points
+  std::vector<int> level;            ///< of each chosen point: index into out.data.levels
+  std::vector<double> pressure;      ///< rho g h of each realization, N/m; one: the mean field
+  Eigen::Index map_from = 0;         ///< points from here on are those of out.maps
+};
+/// Values over rho g h into out.data and out.maps, from a field on points over h. Packings that are
+/// copies of an earlier one (all values equal but for rounding) are dropped with a warning: they
+/// are no independent realizations. Of the mean field values without an error are left out with a
+/// warning, unless none has one. `name`: of a realization. Throws as keep_complete_rows.
+void take_values(const FitSetup& setup, const Field& field, const HeapPlaces& at,
                  const std::function<std::string(std::size_t)>& name, Observations& out);
-
-/// Chooses the components, and of these the complete rows. `all`: values of sigma_xx on all points,
-/// then sigma_yy, sigma_xy; columns realizations. `level`: of each point. Throws as
-/// keep_complete_rows.
-void keep_rows(const FitSetup& setup, const Eigen::MatrixXd& points, const std::vector<int>& level,
-               const Eigen::MatrixXd& all, Observations& out);
 
 }  // namespace grainfield::coupling

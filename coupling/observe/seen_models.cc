@@ -1,0 +1,126 @@
+#include "coupling/observe/seen_models.h"
+
+#include <utility>
+
+#include "coupling/models/model_record.h"
+#include "coupling/run/comparison_page.h"
+
+namespace grainfield::coupling {
+namespace {
+
+// The places of every line, of the map, and of lines with few places again through kDrawnPlaces.
+struct Sets {
+  std::vector<PointSet> all;
+  std::vector<std::size_t> drawn;  // lines
+};
+
+Sets sets_of(const Observations& observed) {
+  Sets out;
+  const auto add = [&](PointSet set) {
+    set.points.rightCols<1>().array() -= observed.apex;
+    out.all.push_back(std::move(set));
+  };
+  for (const ObservedLine& line : observed.lines) add(line.places);
+  if (observed.map.points.size() > 0) {
+    add({observed.map.points, Smoothing::none, nullptr, observed.specimen == Specimen::heap});
+  }
+  for (std::size_t l = 0; l < observed.lines.size(); ++l) {
+    const ObservedLine& line = observed.lines[l];
+    if (line.both_sides || line.places.points.rows() >= kFewPlaces) continue;
+    PointSet set = line.places;
+    set.points = drawn_places(set.points);
+    add(std::move(set));
+    out.drawn.push_back(l);
+  }
+  return out;
+}
+
+Eigen::VectorXd along(const ObservedLine& line, const Eigen::MatrixXd& stresses) {
+  const Eigen::VectorXd values = line.sign * stresses.col(line.component);
+  if (!line.both_sides) return values;
+  return both_sides(Eigen::VectorXd(values.head((line.profile.x.size() + 1) / 2)));
+}
+
+}  // namespace
+
+std::vector<SeenModel> see_models(const Observations& observed,
+                                  const std::vector<ModelChoice>& choices,
+                                  const ModelEvaluator& evaluate,
+                                  const std::function<RunFacts(const ModelChoice&)>& told) {
+  const Sets sets = sets_of(observed);
+  const std::size_t lines = observed.lines.size();
+  std::vector<SeenModel> out;
+  for (const ModelChoice& choice : choices) {
+    SeenModel seen;
+    seen.choice = choice;
+    seen.told = told ? told(choice) : observed.told;
+    Evaluation e = evaluate(choice, seen.told, sets.all);
+    ModelProfiles& p = seen.profiles;
+    p = {choice.label, model_label(choice), family_of(choice.name), {}};
+    for (std::size_t l = 0; l < lines; ++l) {
+      p.values.push_back(along(observed.lines[l], e.stresses[l]));
+    }
+    p.line_x.resize(lines);
+    p.line.resize(lines);
+    const std::size_t first = sets.all.size() - sets.drawn.size();
+    for (std::size_t k = 0; k < sets.drawn.size(); ++k) {
+      const std::size_t l = sets.drawn[k];
+      p.line_x[l] = sets.all[first + k].points.col(0);
+      p.line[l] = along(observed.lines[l], e.stresses[first + k]);
+    }
+    if (first > lines) seen.map = std::move(e.stresses[lines]);
+    e.stresses.resize(lines);
+    seen.stresses = std::move(e.stresses);
+    seen.figures = over_grains_height(std::move(e.figures), observed.spanned());
+    seen.seconds = e.seconds;
+    out.push_back(std::move(seen));
+  }
+  return out;
+}
+
+Comparison compared(const Observations& observed, const std::vector<SeenModel>& models) {
+  std::vector<Profile> profiles;
+  for (const ObservedLine& line : observed.lines) profiles.push_back(line.profile);
+  std::vector<ModelProfiles> beside;
+  for (const SeenModel& model : models) beside.push_back(model.profiles);
+  Comparison out =
+      models.empty()
+          ? without_models(std::move(profiles), observed.scale, observed.realizations)
+          : compare(std::move(profiles), std::move(beside), observed.scale, observed.realizations);
+  out.dim = observed.told.dim;
+  if (observed.specimen == Specimen::layer) out.judgement.noun = "layer";
+  if (observed.specimen == Specimen::heap) out.judgement.noun = out.dim == 3 ? "cone" : "pile";
+  if (!observed.note.empty()) out.judgement.notes.push_back(observed.note);
+  return out;
+}
+
+void add_compared(Summary& summary, const Observations& observed, const Comparison& comparison,
+                  std::size_t main) {
+  if (observed.specimen == Specimen::layer) {
+    add_comparison(summary, comparison, main);
+    return;
+  }
+  for (const auto& [key, figure] : summary_figures(comparison, main)) {
+    if (!key.starts_with("response.")) summary[key] = figure;  // they speak of a load
+  }
+}
+
+void add_models(StudyResult& out, const Observations& observed,
+                const std::vector<SeenModel>& models) {
+  const Field& map = observed.map;
+  double seconds = 0;
+  for (const SeenModel& model : models) {
+    seconds += model.seconds;
+    Field field = model_field(model.choice, model.told, map.points, model.map, map.nx, map.ny);
+    field.nz = map.nz;
+    if (observed.apex != 0) field.attributes["apex_z"] = observed.apex;
+    out.fields.emplace_back("model_" + model.choice.label, std::move(field));
+    if (map.points.cols() == 2) {
+      out.model_maps.push_back({model.profiles.label, model.map.col(1)});
+    }
+    add_model(out.summary, model.choice, model.figures, model.seconds);
+  }
+  out.summary["time.continuum_s"] = seconds;
+}
+
+}  // namespace grainfield::coupling
