@@ -176,7 +176,8 @@ AveragedExtents measure_items(std::vector<AveragedItem>& items, const AverageReq
     out.dim = s.dim;
     independence.add(item.state, s);
     const Placement placed = place(s, request.frame);
-    of_forces.add(3, item.state.file + ":" + item.state.group, dem::added_forces_note(s));
+    of_forces.add(3, item.state.file + ":" + item.state.group,
+                  dem::added_forces_note(s.attributes));
     copy_added_forces(s, out.added_forces);
     if (forces) add_warnings(item.state, s, idle, of_forces);
     if (forces && request.response) {

@@ -41,7 +41,7 @@ PileFrame frame_of(const HeapReader& heaps, std::size_t k, PackingWarnings& warn
       throw std::invalid_argument(text);
     }
     warnings.add(heaps.name(k), check);
-    warnings.add(kAddedForcesKind, heaps.name(k), dem::added_forces_note(heap));
+    warnings.add(kAddedForcesKind, heaps.name(k), dem::added_forces_note(heap.attributes));
     PileFrame frame = pile_frame(heap);
     if (!(frame.pressure() > 0)) {
       throw std::invalid_argument("has no weight: gravity, masses or heights are 0");
