@@ -180,6 +180,7 @@ NamedFields average_files(AverageRequest request, Gaps* gaps, std::vector<std::s
     if (all.load > 0) field.attributes["F"] = all.load;
     field.attributes["frame"] = request.frame;
     if (request.rings) field.attributes["rings"] = 1.0;
+    field.attributes.insert(all.added_forces.begin(), all.added_forces.end());
     return field;
   };
 

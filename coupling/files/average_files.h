@@ -41,10 +41,11 @@ void settle(AverageRequest& request, bool kernel_chosen, bool width_chosen);
 /// "response", and with a response in the layer's frame also "base_response"; of several
 /// realizations with the single values of the stresses. Attributes: method, kernel, width, h, F
 /// where a load is known, and of heaps, one number per realization separated by commas: heap.h (m),
-/// rho_g_h (N/m; in space Pa), left_deg, right_deg (of a cone alike). `gaps` (may be null) is told
+/// rho_g_h (N/m; in space Pa), left_deg, right_deg (of a cone alike), and those of forces of a
+/// Python function that made the first packing (added_forces_mark.h). `gaps` (may be null) is told
 /// which points have no value, `warnings` (may be null) of states without contacts or whose
-/// contacts pull, of packings of unlike heights, and of a response without a load. Throws
-/// std::invalid_argument for snapshots without a partner, different loads, an unknown frame,
+/// contacts pull, of such forces, of packings of unlike heights, and of a response without a load.
+/// Throws std::invalid_argument for snapshots without a partner, different loads, an unknown frame,
 /// snapshots of two and of three dimensions together, rings in the plane, a grid or points of
 /// another dimension, and what averaging throws.
 NamedFields average_files(AverageRequest request, Gaps* gaps = nullptr,

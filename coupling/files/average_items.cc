@@ -11,8 +11,10 @@
 #include "coupling/averaging/contact_geometry.h"
 #include "coupling/averaging/extent.h"
 #include "coupling/averaging/upright.h"
+#include "coupling/files/added_forces.h"
 #include "coupling/files/placement.h"
 #include "coupling/import/packing_warnings.h"
+#include "dem/snapshot/added_forces_mark.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -174,6 +176,9 @@ AveragedExtents measure_items(std::vector<AveragedItem>& items, const AverageReq
     out.dim = s.dim;
     independence.add(item.state, s);
     const Placement placed = place(s, request.frame);
+    of_forces.add(3, item.state.file + ":" + item.state.group,
+                  dem::added_forces_note(s.attributes));
+    copy_added_forces(s, out.added_forces);
     if (forces) add_warnings(item.state, s, idle, of_forces);
     if (forces && request.response) {
       const auto unloaded = snapshot_of(item.unloaded, &idle);

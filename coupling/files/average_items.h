@@ -34,6 +34,7 @@ struct AveragedExtents {
   int dim = 2;
   std::vector<PileFrame> heaps;                                      // frame "heap" only
   double least = std::numeric_limits<double>::infinity(), most = 0;  // of the depths
+  Attributes added_forces;  // those of the first packing with such forces
 };
 
 /// Measures the items and finds which way is up in each. Throws std::invalid_argument for packings

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "continuum/settings.h"
+#include "coupling/files/added_forces.h"
 #include "coupling/files/measured_share.h"
 #include "coupling/heap/heap_field.h"
 #include "coupling/judge/words.h"
@@ -256,6 +257,9 @@ CompareOutcome compare_field(const CompareRequest& request) {
   }
   Comparison comparison = compared(observed, models);
   if (out.measured) out.carried = carried_lines(fields, comparison.judgement);
+  if (const std::string note = added_forces_note(fields.front().second); !note.empty()) {
+    comparison.judgement.doubts.push_back(as_sentence(note));
+  }
   summary["version"] = version_and_commit();
   summary["ensemble.realizations"] = static_cast<std::int64_t>(observed.realizations);
   add_figures_of(observed, comparison, main, summary);

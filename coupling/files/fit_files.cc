@@ -11,6 +11,7 @@
 #include "continuum/model.h"
 #include "coupling/case/apply.h"
 #include "coupling/case/shipped_cases.h"
+#include "coupling/files/added_forces.h"
 #include "coupling/files/average_files.h"
 #include "coupling/files/measured_field.h"
 #include "coupling/files/measured_share.h"
@@ -290,6 +291,9 @@ FitOutcome fit_files(const FitRequest& request) {
       take_what_was_measured(field, !request.case_file.empty(), overrides, value.get<FitSetup>());
     }
     data = observe_heap_field(value.get<FitSetup>(), field, out.packings.front());
+    if (const std::string note = added_forces_note(field); !note.empty()) {
+      data.warnings.push_back(fmt::format("{}: {}", out.packings.front(), note));
+    }
     if (measured) {
       if (const auto share = carried_share(field)) out.carried = share_text(*share);
       const std::vector<std::string> doubts = measured_doubts(field);

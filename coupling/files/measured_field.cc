@@ -344,7 +344,8 @@ void refuse_narrow(const Field& field, const MeasuredHeap& heap) {
   if (outermost >= kNarrow * foot) return;
   throw std::invalid_argument(fmt::format(
       "all {} places on the base lie within {:.3g} m of the axis, where the feet are at {:.3g} and "
-      "{:.3g} m, allowed: the outermost {:g} m or more away; correct the unit of x",
+      "{:.3g} m, allowed: the outermost {:g} m or more away; correct the unit of x, or the height "
+      "(--height, m)",
       base.size(), outermost, -heap.left, heap.right, kNarrow * foot));
 }
 

@@ -13,12 +13,14 @@
 #include "coupling/import/packing_warnings.h"
 #include "coupling/observe/heap_rows.h"
 #include "coupling/run/realization_file.h"
+#include "dem/snapshot/added_forces_mark.h"
 
 namespace grainfield::coupling {
 namespace {
 
-constexpr double kRange = 2;     // of the Lucy kernel, widths
-constexpr double kLevel = 1e-6;  // of gravity: its part along the floor
+constexpr double kRange = 2;                   // of the Lucy kernel, widths
+constexpr double kLevel = 1e-6;                // of gravity: its part along the floor
+constexpr std::size_t kAddedForcesKind = 100;  // of warnings: behind those of a check
 
 PileFrame frame_of(const HeapReader& heaps, std::size_t k, PackingWarnings& warnings) {
   const dem::Snapshot heap = heaps.read(k);  // its messages name the file
@@ -39,6 +41,7 @@ PileFrame frame_of(const HeapReader& heaps, std::size_t k, PackingWarnings& warn
       throw std::invalid_argument(text);
     }
     warnings.add(heaps.name(k), check);
+    warnings.add(kAddedForcesKind, heaps.name(k), dem::added_forces_note(heap.attributes));
     PileFrame frame = pile_frame(heap);
     if (!(frame.pressure() > 0)) {
       throw std::invalid_argument("has no weight: gravity, masses or heights are 0");

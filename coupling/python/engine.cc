@@ -2,6 +2,7 @@
 #include "dem/engine/engine.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <atomic>
@@ -12,8 +13,10 @@
 
 #include "coupling/case/apply.h"
 #include "coupling/python/bindings.h"
+#include "coupling/python/own_forces.h"
 #include "dem/heap/grain_family.h"
 #include "dem/laws/material_defaults.h"
+#include "dem/snapshot/added_forces_mark.h"
 #include "dem/study/common.h"
 
 namespace grainfield::python {
@@ -84,6 +87,20 @@ dem::RoundGrain mean_grain(const Snapshot& s) {
   return {s.dim, count > 0 ? sum / count : 0};
 }
 
+/// Names of an attribute of added_forces_mark.h.
+std::vector<std::string> names_in(const Snapshot& s, const char* attribute) {
+  std::vector<std::string> out;
+  const auto at = s.attributes.find(attribute);
+  if (at == s.attributes.end()) return out;
+  const std::string& all = at->second;
+  for (std::size_t from = 0; from < all.size();) {
+    const std::size_t to = std::min(all.find(", ", from), all.size());
+    out.push_back(all.substr(from, to - from));
+    from = to + 2;
+  }
+  return out;
+}
+
 class Engine {
  public:
   Engine(const Packing& start, const std::vector<std::string>& keys, int threads) {
@@ -98,7 +115,15 @@ class Engine {
     const dem::EngineSettings settings = dem::engine_settings(
         setup.material, setup.motion, extremes_of(*start.state, shape), threads, false, 1, shape);
     const py::gil_scoped_release released;
-    engine_ = dem::make_engine(settings, *start.state);
+    missing_ = names_in(*start.state, dem::kAddedForces);
+    if (missing_.empty()) {
+      engine_ = dem::make_engine(settings, *start.state);
+    } else {  // step() asks for them
+      Snapshot state = *start.state;
+      state.attributes.erase(dem::kAddedForces);
+      engine_ = dem::make_engine(settings, state);
+    }
+    dem::added_forces(*engine_).mark_former_forces(names_in(*start.state, dem::kFormerAddedForces));
     dim_ = start.state->dim;
     density_ = setup.material.density;
     all_ = static_cast<std::int64_t>(start.state->grains.size());
@@ -130,17 +155,41 @@ class Engine {
   void hold_view() { ++views_; }
   void drop_view() { --views_; }
 
+  void add_force(const py::function& function, const std::string& name, long every,
+                 bool in_contacts) {
+    dem::added_forces(changing()).add_force(own_force(function, name, every, in_contacts));
+    std::erase(missing_, name);
+    slice_ = 1;  // a function may take its time
+  }
+  void remove_force(const std::string& name) {
+    dem::TakesAddedForces& forces = dem::added_forces(changing());
+    if (std::erase(missing_, name) > 0) return forces.mark_former_forces({name});
+    forces.remove_force(name);
+  }
+  std::vector<std::string> forces() const { return dem::added_forces(*engine_).added_forces(); }
+  /// Of the start, that nobody has given yet.
+  const std::vector<std::string>& missing() const { return missing_; }
+  /// After the present step, step() raises KeyboardInterrupt. Returns whether it was asked before.
+  bool interrupt() { return interrupted_.exchange(true); }
+
   /// Wall time of steps so far, without Python's part.
   double seconds() const { return seconds_; }
 
   // In slices, between which signals are looked at: the bits are those of one call.
   void step(long n) {
     require_idle();
+    if (!missing_.empty())
+      throw std::invalid_argument(fmt::format(
+          "Engine: this packing comes from a run with forces of a Python function: found none of "
+          "{}; add each with add_force or add_contact_force(function, name=...), or go on without "
+          "by remove_force(name)",
+          fmt::join(missing_, ", ")));
     struct Busy {
       explicit Busy(std::atomic<bool>& flag) : flag_(flag) { flag_ = true; }
       ~Busy() { flag_ = false; }
       std::atomic<bool>& flag_;
     } busy(busy_);
+    interrupted_ = false;
     for (long left = n, slice = std::min(left, slice_); left > 0; slice = std::min(left, slice_)) {
       const auto start = Clock::now();
       {
@@ -152,7 +201,8 @@ class Engine {
       seconds_ += took;
       if (took < kSliceSeconds / 2 && slice == slice_ && slice_ < (1L << 30)) slice_ *= 2;
       if (took > 2 * kSliceSeconds && slice_ > 1) slice_ /= 2;
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      if (interrupted_.exchange(false)) PyErr_SetNone(PyExc_KeyboardInterrupt);
+      if (PyErr_Occurred() != nullptr || PyErr_CheckSignals() != 0) throw py::error_already_set();
     }
   }
 
@@ -167,7 +217,8 @@ class Engine {
   std::int64_t all_ = 0;
   long slice_ = 64;
   std::atomic<int> views_ = 0;
-  std::atomic<bool> busy_ = false;
+  std::atomic<bool> busy_ = false, interrupted_ = false;
+  std::vector<std::string> missing_;
 };
 
 using Held = std::shared_ptr<Engine>;
@@ -361,12 +412,21 @@ void add_engine(py::module_& module) {
                    1 / self.state().time_step()));
              self.changing().set_background_damping(rate);
            })
+      .def("add_force", &Engine::add_force, py::arg("function"), py::arg("name"), py::arg("every"),
+           py::arg("in_contacts"))
+      .def("remove_force", &Engine::remove_force)
+      .def("forces", &Engine::forces)
+      .def("interrupt", &Engine::interrupt)
       .def("measure", measure)
       .def("walls", walls)
       .def("snapshot",
            [](const Engine& self) {
              // No other thread may step it meanwhile: the lock of Python stays.
-             return Packing{std::make_shared<const Snapshot>(self.state().snapshot())};
+             Snapshot now = self.state().snapshot();
+             if (!self.missing().empty())
+               now.attributes[dem::kAddedForces] =
+                   fmt::format("{}", fmt::join(self.missing(), ", "));
+             return Packing{std::make_shared<const Snapshot>(std::move(now))};
            })
       .def("image", [](const Engine& self) { return py::bytes(self.state().image()); })
       .def_property_readonly("dim", &Engine::dim)

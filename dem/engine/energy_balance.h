@@ -154,12 +154,14 @@ void book(Account<D>& account, const Rule& rule, const Body<D>& a, const Body<D>
   }
 }
 
-/// Of the forces from outside on one grain that are no potential's: damping and an applied force.
+/// Of the forces from outside on one grain that are no potential's: damping, an applied force and
+/// the caller's own.
 template <int D>
 struct OuterAccount {
   VectorOf<D> drag = zero<VectorOf<D>>();  ///< N, in the step before
   SpinOf<D> drag_torque = zero<SpinOf<D>>();
   VectorOf<D> applied = zero<VectorOf<D>>();
+  SpinOf<D> applied_torque = zero<SpinOf<D>>();
   double damped = 0, work = 0;  ///< J
 };
 

@@ -10,6 +10,7 @@
 
 #include "dem/engine/engine_of.h"
 #include "dem/motion/leaping.h"
+#include "dem/snapshot/added_forces_mark.h"
 #include "dem/snapshot/images.h"
 #include "dem/space/moving_cell.h"
 
@@ -168,6 +169,7 @@ std::unique_ptr<Engine> make_engine(const EngineSettings& settings, const Snapsh
     throw std::invalid_argument(
         fmt::format("the snapshot is {}D; a {}D one is needed", start.dim, dim));
   }
+  refuse_added_forces(start, "the snapshot");
   EngineSettings same = settings;
   same.gravity_x = start.gravity.x();
   same.gravity_y = start.gravity.y();

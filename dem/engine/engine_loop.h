@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -13,6 +14,9 @@
 #include <vector>
 
 #include "dem/computation_failed.h"
+#include "dem/engine/add_forces.h"
+#include "dem/engine/added_forces.h"
+#include "dem/engine/added_image.h"
 #include "dem/engine/cell_checks.h"
 #include "dem/engine/engine.h"
 #include "dem/engine/report.h"
@@ -31,7 +35,7 @@
 namespace grainfield::dem {
 
 template <class Shape, class Law, class Integrator>
-class EngineLoop final : public Engine {
+class EngineLoop final : public Engine, public TakesAddedForces {
  public:
   using State = World<Shape, Law, Integrator>;
   static constexpr int dim = Shape::dim;
@@ -44,6 +48,7 @@ class EngineLoop final : public Engine {
         search_(world_, settings.skin, team_),
         review_(world_, search_),
         sweep_(world_),
+        add_forces_(world_),
         wall_steps_(world_) {
     check_rest_in_flow(world_.cell.flows(), false, settings.sleep.on);
   }
@@ -153,6 +158,7 @@ class EngineLoop final : public Engine {
     world_.wake_all();
   }
   void set_velocity_gradient(const Eigen::Matrix3d& gradient) override {
+    if (world_.added.on() && !gradient.isZero(0)) refuse_flow_with_added_forces();
     Cell<3> cell = world_.cell.told();
     cell.velocity_gradient = gradient;
     check_cell(cell, dim, world_.time_step);
@@ -170,9 +176,44 @@ class EngineLoop final : public Engine {
   }
   Cell<3> cell() const override { return world_.cell.told(); }
   void set_sleep(bool on) override {
+    if (world_.added.on() && on) refuse_sleep_with_added_forces();
     check_rest_in_flow(world_.cell.flows(), false, on);
     world_.sleep.on = on;
     world_.wake_all();
+  }
+
+  void add_force(std::shared_ptr<AddedForce> force) override {
+    if (world_.sleep.on) refuse_sleep_with_added_forces();
+    if (world_.cell.flows()) refuse_flow_with_added_forces();
+    auto& sources = world_.added.sources;
+    std::erase(world_.added.former, force->name());
+    world_.added.changed = true;
+    for (auto& source : sources) {
+      if (source.force->name() == force->name()) return source.force.swap(force);
+    }
+    sources.push_back({std::move(force), {}, {}});
+  }
+  void remove_force(const std::string& name) override {
+    auto& sources = world_.added.sources;
+    const auto has_name = [&](const auto& source) { return source.force->name() == name; };
+    if (std::erase_if(sources, has_name) == 0) {
+      throw std::invalid_argument(fmt::format("found no added force \"{}\", allowed: {}", name,
+                                              sources.empty() ? "none" : world_.added.names()));
+    }
+    world_.added.changed = true;
+    mark_former_forces({name});
+    add_forces_.sum_up();
+  }
+  std::vector<std::string> added_forces() const override {
+    std::vector<std::string> names;
+    for (const auto& source : world_.added.sources) names.push_back(source.force->name());
+    return names;
+  }
+  void mark_former_forces(const std::vector<std::string>& names) override {
+    auto& former = world_.added.former;
+    for (const std::string& name : names) {
+      if (std::find(former.begin(), former.end(), name) == former.end()) former.push_back(name);
+    }
   }
 
   void step(long n) override {
@@ -181,10 +222,17 @@ class EngineLoop final : public Engine {
     if (world_.search_needed) search(false);
     const long start = world_.steps;
     sweep_.clear_moved();
-    if (first_new_ < world_.grains.size()) start_new_grains();
+    const bool adds = world_.added.on();
+    if (first_new_ < world_.grains.size() || world_.added.changed) {
+      if (adds) add_forces_.ask(start, true);
+      if (world_.added.changed) first_new_ = 0;  // the first half kick is theirs, too
+      start_new_grains();
+      world_.added.changed = false;
+    }
     if (wall_steps_.leave_margins()) sweep_.ask_for_search();
     const bool flows = world_.cell.flows();
     if (flows) world_.cell.look_ahead();
+    std::exception_ptr failure;  // of a force of the caller's own; then this step is the last
     team_.run([&](int rank) {
       sweep_.begin_block(rank);
       for (long s = 0; s < n; ++s) {
@@ -198,6 +246,16 @@ class EngineLoop final : public Engine {
           team_.meet();
         }
         if (!between_steps(rank, start + s)) return;
+        if (adds) [[unlikely]] {
+          team_.alone(rank, [&] {
+            try {
+              add_forces_.ask(start + s + 1, false);
+            } catch (...) {
+              failure = std::current_exception();
+              n = s + 1;
+            }
+          });
+        }
         const bool moves_on = s + 1 < n;
         if (moves_on) {
           sweep_.template crossing<SweepKind::move_on>(rank, world_.time_step);
@@ -221,6 +279,7 @@ class EngineLoop final : public Engine {
       world_.steps = start + n;
       diverged_ = has_diverged();  // a grain that only spins is not searched for
     }
+    if (failure) std::rethrow_exception(failure);
     if (diverged_) {
       world_.contacts.forget_forces();
       report_divergence();
@@ -291,6 +350,7 @@ class EngineLoop final : public Engine {
 
   std::string image() const override {
     ImageWriter w;
+    if (world_.added.on() || !world_.added.former.empty()) write_added(world_.added, w);
     w.put(free_);
     w.put(first_new_);
     write_world(world_, search_, w);
@@ -298,10 +358,15 @@ class EngineLoop final : public Engine {
   }
   void restore(const std::string& image) override {
     ImageReader r(image);
+    if (holds_added(image)) read_added(world_.added, r);
     r.get(free_);
     r.get(first_new_);
     read_world(world_, search_, r);
     r.finish();
+    for (const auto& source : world_.added.sources) {
+      r.require(source.loads.empty() || source.loads.size() == world_.grains.ids.size());
+    }
+    add_forces_.sum_up();
     for (const int kind : world_.grains.kinds) world_.acting.add_grain(kind);
     for (const auto& b : world_.grains.bodies) largest_ = std::max(largest_, b.radius);
     sweep_.reset();
@@ -437,6 +502,7 @@ class EngineLoop final : public Engine {
   Search<State> search_;
   Review<State> review_;
   Sweep<State> sweep_;
+  AddForces<State> add_forces_;
   WallSteps<State> wall_steps_;
   int free_ = 0;                // grains that are not fixed
   double largest_ = 0;          // radius, m

@@ -1,5 +1,5 @@
 // What acts on a grain beside contacts and weight: Cundall's local damping, and the energy account
-// of damping, drag and the applied force.
+// of damping, drag, the applied force and forces of the caller's own.
 #pragma once
 #include "dem/engine/world.h"
 #include "dem/motion/local_damping.h"
@@ -30,7 +30,7 @@ class OuterForces {
 
   /// Damping and the applied force on a grain, before its step ends, or (dt = 0) before its first
   /// one begins. `local`: its local damping.
-  [[gnu::noinline]] void record(int i, const Vector applied, const Damping& local, double dt) {
+  [[gnu::noinline]] void record(int i, Vector applied, const Damping& local, double dt) {
     auto& account = world_.balance.outer[world_.grains.ids[i]];
     const auto& b = world_.grains.bodies[i];
     const Vector velocity = world_.fluctuation(i);  // damping is against the flow
@@ -44,10 +44,15 @@ class OuterForces {
     account.damped += 0.5 * dt *
                       (Vector(account.drag + drag).dot(velocity) +
                        power_of(SpinOf<dim>(account.drag_torque + turning), b.spin));
-    account.work += 0.5 * dt * Vector(account.applied + applied).dot(b.velocity);
+    const auto added = world_.added.of(world_.grains.ids[i]);
+    applied += added.force;
+    account.work += 0.5 * dt *
+                    (Vector(account.applied + applied).dot(b.velocity) +
+                     power_of(SpinOf<dim>(account.applied_torque + added.torque), b.spin));
     account.drag = drag;
     account.drag_torque = turning;
     account.applied = applied;
+    account.applied_torque = added.torque;
   }
 
  private:

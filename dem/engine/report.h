@@ -1,6 +1,7 @@
 // What a world tells of its state: contacts, diagnostics, snapshots.
 #pragma once
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include "dem/engine/engine.h"
 #include "dem/engine/turning.h"
 #include "dem/engine/world.h"
+#include "dem/snapshot/added_forces_mark.h"
 #include "dem/snapshot/cell_stress.h"
 
 namespace grainfield::dem {
@@ -26,7 +28,7 @@ class Report {
   explicit Report(const World& world) : world_(world) {}
 
   /// visit(first grain, pair, force, is a wall, overlap) for every contact that carried force in
-  /// the last step.
+  /// the last step, with what forces of the caller's own do in it.
   template <class Visit>
   void visit_contacts(Visit visit) const {
     visit_listed([&](int i, int /*k*/, const Pair& pair, const Force& f, bool wall,
@@ -39,7 +41,7 @@ class Report {
     Overlap o;
     for (int i = 0; i < contacts.pairs.rows(); ++i) {
       for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k) {
-        const Force& f = contacts.pair_forces[k];
+        const Force f = with_added(contacts.pair_forces[k], i, contacts.pairs[k], false);
         if (pushes(f) && overlap(i, contacts.pairs[k].j, false, o, contacts.pairs[k].feature)) {
           visit(i, k, contacts.pairs[k], f, false, o);
         }
@@ -49,13 +51,14 @@ class Report {
         if (!world_.walls.is_plain(slot)) {
           visit_wall(world_, i, world_.grains.bodies[i], k,
                      [&](int, int at, const Overlap& overlap, const auto&, const auto&) {
-                       const Force& f = contacts.wall_forces[at];
+                       const Force f =
+                           with_added(contacts.wall_forces[at], i, contacts.walls[at], true);
                        if (pushes(f)) visit(i, at, contacts.walls[at], f, true, overlap);
                      });
           k += world_.walls.slots_of(world_.walls.wall_of(slot)) - 1;
           continue;
         }
-        const Force& f = contacts.wall_forces[k];
+        const Force f = with_added(contacts.wall_forces[k], i, contacts.walls[k], true);
         if (pushes(f) && overlap(i, slot, true, o)) visit(i, k, contacts.walls[k], f, true, o);
       }
     }
@@ -87,13 +90,19 @@ class Report {
       const double radius =
           wall ? bodies[i].radius : std::min(bodies[i].radius, bodies[pair.j].radius);
       d.max_overlap_ratio = std::max(d.max_overlap_ratio, o.depth / radius);
-      if (is_sliding(f, o, rule(i, pair, wall).friction)) ++d.sliding;
-      resultant[i] += f.force;
-      moment[i] += f.torque_i;
+      const Force own = of_law(f, i, pair, wall);
+      if (is_sliding(own, o, rule(i, pair, wall).friction)) ++d.sliding;
+      resultant[i] += own.force;
+      moment[i] += own.torque_i;
       if (wall) return;
-      resultant[pair.j] -= f.force;
-      moment[pair.j] += f.torque_j;
+      resultant[pair.j] -= own.force;
+      moment[pair.j] += own.torque_j;
     });
+    for (int i = 0; world_.added.on() && i < world_.grains.size(); ++i) {
+      const auto added = world_.added.of(world_.grains.ids[i]);
+      resultant[i] += added.force;
+      moment[i] += added.torque;
+    }
     const auto& balance = world_.balance;
     if (balance.on) {  // bodies that part faster than their spring follows store energy, too
       const auto& list = world_.contacts;
@@ -241,6 +250,10 @@ class Report {
     s.attributes["integrator"] = world_.integrator;
     s.attributes["law"] = World::Law::name;
     s.attributes["time_step"] = fmt::format("{:.17g}", world_.time_step);
+    if (world_.added.on()) s.attributes[kAddedForces] = world_.added.names();
+    if (!world_.added.former.empty()) {
+      s.attributes[kFormerAddedForces] = fmt::format("{}", fmt::join(world_.added.former, ", "));
+    }
     return s;
   }
 
@@ -252,7 +265,7 @@ class Report {
     Matrix sum = Matrix::Zero(), motion = Matrix::Zero();
     for (int i = 0; i < contacts.pairs.rows(); ++i) {
       for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k) {
-        const Force& f = contacts.pair_forces[k];
+        const Force f = with_added(contacts.pair_forces[k], i, contacts.pairs[k], false);
         if (!pushes(f)) continue;
         const int j = contacts.pairs[k].j;
         const typename World::Vector branch =
@@ -280,6 +293,25 @@ class Report {
 
  private:
   static bool pushes(const Force& f) { return !f.force.isZero(0); }
+
+  Force added(int i, const Pair& pair, bool wall) const {
+    const auto& ids = world_.grains.ids;
+    if (wall) return world_.added.at(wall_key(ids[i], pair.j), false);
+    return world_.added.at(pair_key(ids[i], ids[pair.j]), ids[i] > ids[pair.j]);
+  }
+  /// A contact's force by the law and by forces of the caller's own.
+  Force with_added(const Force& f, int i, const Pair& pair, bool wall) const {
+    Force all = f;
+    if (world_.added.on()) AddedLoads<dim>::add(added(i, pair, wall), false, all);
+    return all;
+  }
+  /// That of the law alone.
+  Force of_law(const Force& all, int i, const Pair& pair, bool wall) const {
+    if (!world_.added.on()) return all;
+    const Force more = added(i, pair, wall);
+    return {all.force - more.force, SpinOf<dim>(all.torque_i - more.torque_i),
+            SpinOf<dim>(all.torque_j - more.torque_j)};
+  }
 
   /// What contact k of a list, or (-1) a frozen one, remembers of rolling.
   RollingMemory<dim> rolling(int i, int k, const Pair& pair, bool wall) const {
@@ -385,7 +417,7 @@ class Report {
     c.normal_force = repulsion_of(f.force, o);
     c.tangential_force = signed_size_of(tangential_of(f.force, o));
     c.friction = rule(i, pair, wall).friction;
-    c.sliding = is_sliding(f, o, c.friction);
+    c.sliding = is_sliding(of_law(f, i, pair, wall), o, c.friction);
     tell_rolling(rolling, c);
     const bool turned = !wall && c.j < c.i;
     tell_spring(seen_from(pair.memory, turned).spring, c);

@@ -110,6 +110,8 @@ class Sweep {
   /// `applied`: the applied force. `first_new`: with SweepKind::start, ids from here on are new.
   template <SweepKind kind>
   void run(int rank, const Vector& applied, double dt, std::int64_t first_new = 0) {
+    if (world_.added.on()) [[unlikely]]
+      begin_with_added(rank);
     sum_incoming(rank, dt);
     if constexpr (rows_in_lanes && kind == SweepKind::move_on) {
       if (sweeps_rows()) {
@@ -130,6 +132,16 @@ class Sweep {
 
  private:
   using Sum = ForceSum<dim>;
+
+  /// The sums of a block begin with the forces of the caller's own.
+  [[gnu::noinline]] void begin_with_added(int rank) {
+    const Blocks& blocks = world_.contacts.blocks;
+    for (int i = blocks.first(rank); i < blocks.last(rank); ++i) {
+      const auto& load = world_.added.sum[static_cast<std::size_t>(world_.grains.ids[i])];
+      sums_[i].force = load.force;
+      sums_[i].torque = load.torque;
+    }
+  }
 
   /// Rows are evaluated side by side in this run.
   bool sweeps_rows() const {

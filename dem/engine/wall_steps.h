@@ -47,8 +47,12 @@ class WallSteps {
     for (int i = 0; i < contacts.walls.rows(); ++i) {
       for (int k = contacts.walls.first(i); k < contacts.walls.last(i); ++k) {
         const int slot = contacts.walls[k].j, wall = walls.wall_of(slot);
-        const auto& f = contacts.wall_forces[k];
+        auto f = contacts.wall_forces[k];
         if (!walls.is_driven(wall) || contacts.wall_normals[k].isZero(0)) continue;
+        if (world_.added.on()) [[unlikely]] {
+          AddedLoads<dim>::add(world_.added.at(wall_key(world_.grains.ids[i], slot), false), false,
+                               f);
+        }
         const double stiffness = walls.state(wall).servo.on != 0 ? stiffness_at(i, slot) : 0;
         walls.add_force(wall, -f.force, f.torque_j, stiffness, world_.grains.inertias[i].mass);
       }

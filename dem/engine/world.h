@@ -8,6 +8,7 @@
 
 #include "dem/contacts/contact_list.h"
 #include "dem/contacts/margins.h"
+#include "dem/engine/added_loads.h"
 #include "dem/engine/energy_balance.h"
 #include "dem/engine/grains.h"
 #include "dem/engine/interaction.h"
@@ -65,6 +66,7 @@ struct World {
   Walls<dim> walls;
   MovingCell<dim> cell;
   Surroundings<dim> around;
+  AddedLoads<dim> added;
   EnergyBalance<dim> balance;
   RollingContacts<dim> rolling;
   using Sleepers = dem::Sleepers<dim, Memory>;

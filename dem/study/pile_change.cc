@@ -7,6 +7,7 @@
 
 #include "dem/heap/grain_family.h"
 #include "dem/quasistatic/contact_network.h"
+#include "dem/snapshot/added_forces_mark.h"
 #include "dem/study/common.h"
 #include "dem/study/fingerprint.h"
 #include "dem/study/gravity_changes.h"
@@ -30,6 +31,7 @@ class PileChangeRun final : public ArchivedRun {
       : setup_(setup), where_(fmt::format("{}:{}", file, group)) {
     const std::vector<std::string> groups = list_snapshots(file);
     pile_ = read_snapshot(file, fmt::format("{}/pile", group));
+    refuse_added_forces(pile_, where_ + "/pile");
     check();
     settings_ = settings(threads);
     changes_.emplace(setup_.change, setup_.rest, settings_, smaller_step(setup_.motion),

@@ -62,3 +62,20 @@ for columns, rows, calls in ((5, 4, 1000), (50, 40, 20)):
     print(f"{len(engine)} grains, {1000 * calls} steps: in one call {at_once:.3f} s, in calls of 1,000 "
           f"with a look at the positions {in_loop:.3f} s: {in_loop / at_once - 1:+.2%} "
           f"(pair by pair: median {ratios[3]:+.2%}, {ratios[0]:+.2%} to {ratios[-1]:+.2%})")
+
+forces = {
+    "add_force": lambda engine, every: engine.add_force(lambda t, grains: -1e-3 * grains.velocities, every=every, name="own"),
+    "add_contact_force": lambda engine, every: engine.add_contact_force(lambda t, contacts: 1e-3 * contacts.normals,
+                                                                        every=every, name="own"),
+}
+for columns, rows, steps in ((5, 4, 20000), (50, 40, 1000), (250, 200, 40)):
+    for name, add in forces.items():
+        for every in (1, 10):
+            own, without = (gf.Engine(lattice(columns, rows), material=material) for _ in range(2))
+            add(own, every)
+            own.step(steps), without.step(steps)
+            pairs = [(cpu_of(lambda: without.step(steps)), cpu_of(lambda: own.step(steps))) for _ in range(5)]
+            ratio = sorted(b / a for a, b in pairs)[2]
+            more = sorted(b - a for a, b in pairs)[2] / steps
+            print(f"{len(own)} grains, {name}, every={every}: {ratio:.2f} times the time without (median of five), "
+                  f"{1e6 * more:.1f} us a step more")

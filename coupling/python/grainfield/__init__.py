@@ -28,7 +28,7 @@ from ._commands import (
 )
 from ._core import version as __version__
 from ._data import Contacts, Field, Packing, Summary, Table, Walls
-from ._engine import Engine
+from ._engine import ContactsNow, Engine, GrainsNow
 from ._foreign import export, import_packing
 from ._files import Collection, read, write
 from ._model import Facts, Model
@@ -40,10 +40,12 @@ __all__ = [
     "Collection",
     "CompareResult",
     "Contacts",
+    "ContactsNow",
     "Engine",
     "Facts",
     "Field",
     "FitResult",
+    "GrainsNow",
     "Judgement",
     "Model",
     "Packing",

@@ -2,13 +2,60 @@
 
 from __future__ import annotations
 
-from typing import Any, Mapping, Sequence
+import contextlib
+import signal
+import threading
+from dataclasses import dataclass, field
+from typing import Any, Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
 from . import _core
 from ._commands import _overrides
 from ._data import Contacts, Packing
+
+
+@dataclass(frozen=True)
+class GrainsNow:
+    """What a function of Engine.add_force gets of the grains, fixed ones too; row k is the grain with id k.
+
+    positions, velocities (n, dim), m, m/s; spins (n), in 3D (n, 3), rad/s; radii, masses (n), m, kg. All
+    are read-only views, made anew by each call. With verlet velocities are those of the half step, which
+    contact forces see too.
+    """
+
+    time: float  #: s
+    positions: np.ndarray = field(repr=False)
+    velocities: np.ndarray = field(repr=False)
+    spins: np.ndarray = field(repr=False)
+    radii: np.ndarray = field(repr=False)
+    masses: np.ndarray = field(repr=False)
+
+    def __len__(self) -> int:
+        return len(self.radii)
+
+
+@dataclass(frozen=True)
+class ContactsNow:
+    """What a function of Engine.add_contact_force gets: m contacts, of grains (and walls) that overlap.
+
+    i, j (m): ids, i < j; at wall number w j = -1 - w. normals (m, dim): unit, from i to j. overlaps (m), m.
+    velocities (m, dim): of i against j at the contact point, m/s; (velocities * normals).sum(1) > 0 is an
+    approach. points (m, dim), m. radii (m): r_i r_j/(r_i + r_j), at a wall r_i, m. grains: a GrainsNow, so
+    that grains.masses[i] are the first grains' masses. All are read-only views, made anew by each call.
+    """
+
+    i: np.ndarray = field(repr=False)
+    j: np.ndarray = field(repr=False)
+    points: np.ndarray = field(repr=False)
+    normals: np.ndarray = field(repr=False)
+    velocities: np.ndarray = field(repr=False)
+    overlaps: np.ndarray = field(repr=False)
+    radii: np.ndarray = field(repr=False)
+    grains: GrainsNow
+
+    def __len__(self) -> int:
+        return len(self.i)
 
 
 class Engine:
@@ -27,6 +74,8 @@ class Engine:
 
     Ctrl-C stops step() within about a tenth of a second, after a whole step. Other threads of Python
     run meanwhile. Raises ValueError for what cannot be set up, RuntimeError when it diverges.
+
+    add_force and add_contact_force try a force, or a contact law, that a function of Python states.
     """
 
     def __init__(
@@ -105,7 +154,62 @@ class Engine:
         """Makes n steps. Calls of any length end in the same bits."""
         if isinstance(n, bool) or n != int(n) or n < 0:
             raise ValueError(f"n: found {n}, allowed: a whole number, 0 or more")
-        self._core.step(int(n))
+        with _late_ctrl_c(self._core) if self._core.forces() else contextlib.nullcontext():
+            self._core.step(int(n))
+
+    def add_force(self, function: Callable[[float, GrainsNow], Any], *, every: int = 1, name: str | None = None) -> None:
+        """Adds forces on grains that function(t, grains) gives, from the next step on.
+
+            def well(t, grains):
+                return -0.5 * grains.positions              # N, a spring to the origin
+            engine.add_force(well)
+
+        It gets the time, s, and a GrainsNow, and returns forces (n, dim), N, row k on grain k, or a pair of
+        these and torques (n), in 3D (n, 3), N m. It is called once in `every` steps, after the grains have
+        moved and before contact forces; what it returns acts until the next call. name: default the
+        function's; the same name again replaces it. On fixed grains its forces have no effect. No grain
+        sleeps. Bits do not depend on threads or on the length of step()'s calls.
+
+        Its exceptions come out of step() as they are, a wrong shape or a number that is not finite as a
+        ValueError. The last step is whole then, made with the forces of the call before.
+
+        Packings of the engine have the attribute added_forces with the names. gf.Engine(packing) goes on
+        from such a packing only after add_force with the same names.
+        """
+        self._add(_OnGrains(function, self), name or _name_of(function), every, False)
+
+    def add_contact_force(self, function: Callable[[float, ContactsNow], Any], *, every: int = 1,
+                          name: str | None = None) -> None:
+        """Adds forces in contacts that function(t, contacts) gives, beside those of the material's law.
+
+            def cohesion(t, contacts):
+                return 0.1 * contacts.normals               # N, pulls i to j and j to i
+            engine.add_contact_force(cohesion)
+
+        It gets the time, s, and a ContactsNow: all contacts at once. It returns forces (m, dim), N, on the
+        grains i at the contact points; on the grains j act the opposite ones. Forces of engine.contacts, of
+        walls and of stresses contain them. For a law of one's own from scratch, give the material a
+        stiffness that does next to nothing, friction 0, and a time_step. All else is as in add_force.
+        """
+        self._add(_InContacts(function, self), name or _name_of(function), every, True)
+
+    def remove_force(self, name: str) -> None:
+        """Ends what add_force or add_contact_force has begun; packings name it in former_added_forces."""
+        self._core.remove_force(name)
+
+    @property
+    def added_forces(self) -> list[str]:
+        """Names of the forces that functions of Python add."""
+        return self._core.forces()
+
+    def _add(self, function: Any, name: str, every: int, in_contacts: bool) -> None:
+        if not callable(function.function):
+            raise ValueError(f"function: found {function.function!r}, allowed: a function of t and "
+                             f"{'contacts' if in_contacts else 'grains'}")
+        if isinstance(every, bool) or every != int(every):
+            raise ValueError(f"every: found {every}, allowed: a whole number of steps, 1 or more")
+        function.name = name
+        self._core.add_force(function, name, int(every), in_contacts)
 
     def apply(
         self,
@@ -183,3 +287,63 @@ class Engine:
     def contacts(self) -> Contacts:
         """The contacts now, a copy; pairs are ids, because grains are numbered 0, 1, 2, ..."""
         return self.packing().contacts
+
+
+class _OnGrains:
+    """What the core calls for a force: dictionaries of arrays in, (forces, torques or None) out."""
+
+    def __init__(self, function: Any, engine: Engine):
+        self.function, self.name, self.dim = function, "", engine.dim
+
+    def __call__(self, grains: Mapping[str, Any], contacts: None) -> tuple[np.ndarray, np.ndarray | None]:
+        now = GrainsNow(**grains)
+        made = self.function(now.time, now)
+        forces, torques = made if isinstance(made, tuple) and len(made) == 2 else (made, None)
+        if torques is not None:
+            turns = (len(now),) if self.dim == 2 else (len(now), 3)
+            torques = _numbers(torques, turns, f"{self.name}: torques").reshape(len(now), -1)
+        return _numbers(forces, (len(now), self.dim), f"{self.name}: forces"), torques
+
+
+class _InContacts(_OnGrains):
+    def __call__(self, grains: Mapping[str, Any], contacts: Mapping[str, Any]) -> tuple[np.ndarray, None]:  # type: ignore[override]
+        now = ContactsNow(**contacts, grains=GrainsNow(**grains))
+        made = self.function(now.grains.time, now)
+        return _numbers(made, (len(now), self.dim), f"{self.name}: forces"), None
+
+
+def _numbers(values: Any, shape: tuple[int, ...], what: str) -> np.ndarray:
+    if values is None:
+        raise ValueError(f"{what}: found None, allowed: an array of shape {shape}; does the function return it?")
+    if isinstance(values, np.ma.MaskedArray):
+        raise ValueError(f"{what}: found a masked array, allowed: an array of shape {shape}; fill it first")
+    made = np.asarray(values)
+    if made.dtype.kind not in "fiu":
+        raise ValueError(f"{what}: found {made.dtype}, allowed: real numbers")
+    if made.shape != shape:
+        raise ValueError(f"{what}: found shape {made.shape}, allowed: {shape}")
+    return made
+
+
+def _name_of(function: Any) -> str:
+    return getattr(function, "__name__", type(function).__name__).strip("<>")
+
+
+@contextlib.contextmanager
+def _late_ctrl_c(core: Any) -> Iterator[None]:
+    """Ctrl-C within a function of add_force takes effect after its step, so that the step is whole; a
+    second one at once."""
+    default = signal.default_int_handler
+    if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGINT) is not default:
+        yield
+        return
+
+    def interrupt(number: int, frame: Any) -> None:
+        if core.interrupt():
+            raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, default)

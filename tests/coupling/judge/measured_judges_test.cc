@@ -224,7 +224,8 @@ TEST(MeasuredJudges, PlacesAThousandTimesTooNarrowAreRefused) {
   EXPECT_EQ(out.code, 2) << out.err;
   EXPECT_THAT(out.err, HasSubstr("all 21 places on the base lie within 0.000125 m of the axis, "
                                  "where the feet are at -0.139 and 0.139 m, allowed: the "
-                                 "outermost 0.00415692 m or more away; correct the unit of x"));
+                                 "outermost 0.00415692 m or more away; correct the unit of x, "
+                                 "or the height (--height, m)"));
 }
 
 }  // namespace
