@@ -107,6 +107,7 @@ std::string error_note(int realizations) {
 void add_tables(Report& report, const PileReport& in) {
   const Comparison& c = in.comparison;
   if (!c.results.empty()) report.sections.emplace_back(distances_table(c, c.scale.stress));
+  report.sections.insert(report.sections.end(), in.fit_tables.begin(), in.fit_tables.end());
   if (!in.changes.rows.empty()) report.sections.emplace_back(in.changes);
   add_rows(report, "Figures", in.figures, error_note(c.realizations));
   add_rows(report, "How it was made", in.made);
@@ -119,6 +120,7 @@ Report pile_report(const PileReport& in) {
   report.title = in.title;
   report.subtitle = in.subtitle;
   add_verdict(report, in.comparison.judgement);
+  report.sections.insert(report.sections.end(), in.fit_pictures.begin(), in.fit_pictures.end());
   if (in.pile != nullptr) {
     report.sections.emplace_back(grains_by_age("The pile by time of drop", *in.pile));
     report.sections.emplace_back(packing("Network of forces", *in.pile));
