@@ -171,6 +171,15 @@ std::vector<std::string> TableColumns::untaken() const {
   return out;
 }
 
+bool TableColumns::chose_of(const std::string& name) const {
+  const std::string stem = name.substr(0, name.find('['));
+  return stem.size() < name.size() &&
+         std::any_of(headings_.begin(), headings_.end(), [&](const Heading& heading) {
+           return heading.name.starts_with(stem + "[") && names_.claims(heading.name) &&
+                  taken_.find(heading.index) != taken_.end();
+         });
+}
+
 bool TableColumns::tells_units() const {
   return std::any_of(headings_.begin(), headings_.end(), [&](const Heading& heading) {
     return !heading.unit.empty() && taken_.find(heading.index) != taken_.end();

@@ -160,6 +160,8 @@ class TableColumns {
   std::vector<std::string> misspelled() const;
   /// Whether any column that was taken has a unit of its own.
   bool tells_units() const;
+  /// Whether the user has chosen others of the vector "c_fc[1]" ... of a column.
+  bool chose_of(const std::string& name) const;
 
  private:
   ForeignColumn look_up(const std::string& ours) const;
