@@ -228,7 +228,8 @@ void Assembly::refuse_unknown(const ForeignRow& row, const ForeignColumn& column
           ? ""
           : fmt::format(
                 "; a wall or facet of that number: --wall NAME:AXIS=POSITION:ids={}; a grain "
-                "that the table of grains lacks: write all of them",
+                "that the table of grains lacks: write all of them; ids that count from another "
+                "number: write those of the grains; another column: --column i=... or j=...",
                 id);
   row.refuse(fmt::format("contact of the unknown grain {}; {}{}", id, known_grains(), hint));
 }

@@ -166,6 +166,56 @@ TEST_F(ImportPrograms, AxesThatAreExchanged) {
               HasSubstr("turn the sign of fx alone"));
 }
 
+// --column y=z takes z away from z.
+TEST_F(ImportPrograms, AColumnIsTakenOnce) {
+  const Outcome out = import("csv",
+                             {write("g.csv",
+                                    "id,x,z,radius,mass\n1,0,0.01,0.01,1\n2,0.0199,0.01,0.01,1\n"
+                                    "3,0.01,0.027,0.01,1\n"),
+                              write("c.csv", "i,j,fx,fz\n1,2,-1,0\n")},
+                             [](ImportOptions& o) {
+                               o.columns = {"y=z", "fy=fz"};
+                             });
+  const dem::Snapshot s = only(out).snapshot;
+  EXPECT_EQ(s.dim, 2);
+  ASSERT_EQ(s.grains.size(), 3u);
+  EXPECT_EQ(s.grains[2].position, dem::Vec3(0.01, 0.027, 0));
+  EXPECT_THAT(csv({write("h.csv", "id,x,z,radius,mass\n1,0,0.01,0.01,1\n"),
+                   write("d.csv", "i,j,fx,fz\n1,2,-1,0\n")})
+                  .refused,
+              HasSubstr("a plane of x and z: --dim 2 --column y=z --column fy=fz"));
+  // EDEM's contacts with geometries: the same name is the id of a grain in one table.
+  const std::string particles =
+      "Particle ID,x,y,radius,mass\n1,0,0.0099,0.01,1\n2,0.0199,0.0099,0.01,1\n";
+  const Outcome geometry = import(
+      "csv",
+      {write("p.csv", particles), write("e.csv", "Particle ID,Geometry ID,fx,fy\n1,7,0,1\n")},
+      [](ImportOptions& o) {
+        o.columns = {"i=Particle ID", "wall=Geometry ID"};
+        o.walls.push_back(parse_wall("floor:y=0:ids=7"));
+      });
+  EXPECT_EQ(only(geometry).snapshot.contacts.size(), 1u);
+}
+
+TEST_F(ImportPrograms, StepsOfAnEmptiedBox) {
+  const std::string none =
+      "ITEM: TIMESTEP\n100\nITEM: NUMBER OF ATOMS\n0\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
+      "ITEM: ATOMS id x y radius mass\n";
+  const std::vector<std::string> files{write("g.dump", atoms(0, "") + none),
+                                       write("c.dump", entries(0) + entries(100, ""))};
+  const Outcome out = import("liggghts", files);
+  EXPECT_EQ(only(out).group, "/step_0");
+  EXPECT_THAT(only(out).warnings, Contains(HasSubstr("left out: 100")));
+  EXPECT_THAT(
+      import("liggghts", files,
+             [](ImportOptions& o) {
+               o.steps = {{100, ""}};
+             })
+          .refused,
+      HasSubstr("g.dump: the tables of grains of step 100 hold no row, expected one of each "
+                "grain; steps that have all tables: 0"));
+}
+
 TEST(StepsWithoutIds, GrainsThatLieApartMayBePieces) {
   const auto keys = [](const RowKeys& all) {
     return std::function<RowKeys()>([all] { return all; });
