@@ -324,7 +324,11 @@ std::vector<Section> fit_pictures(const EnsembleFits& fits) {
   const Observations& seen = fits.observed;
   const char* const from = heap ? "x / h (apex at 0)" : "x / h (load at 0)";
   const std::string best = fits.judgement.best;
-  for (const std::string& component : seen.data.components) {
+  // The vertical stress first: it is what the report begins with.
+  std::vector<std::string> components = seen.data.components;
+  std::stable_partition(components.begin(), components.end(),
+                        [](const std::string& name) { return name == "sigma_yy"; });
+  for (const std::string& component : components) {
     std::vector<Frame> frames = profile_frames(fits, component);
     if (frames.empty()) continue;
     Picture picture =

@@ -92,10 +92,16 @@ Table shapes_table(const Comparison& c, const std::string& unit, const std::stri
   return out;
 }
 
-void add_profile_tables(Report& report, const Comparison& c) {
+void write_profile_tables(const std::string& folder, Report& report, const Comparison& c) {
   if (c.models.empty()) return;
-  report.sections.emplace_back(Text{"Place by place", profiles_note(c), false});
-  for (Table& table : profile_tables(c)) report.sections.emplace_back(std::move(table));
+  Report tables{
+      report.title, fmt::format("The {} and the models, place by place", c.subject()), {}};
+  tables.sections.emplace_back(Text{"", profiles_note(c), false});
+  for (Table& table : profile_tables(c)) tables.sections.emplace_back(std::move(table));
+  write_report(folder + "/tables.html", tables);
+  report.sections.emplace_back(Text{
+      "Place by place",
+      fmt::format("tables.html has the {} and the models at every place.", c.subject()), false});
 }
 
 Eigen::VectorXd both_sides(const Eigen::VectorXd& by_radius) {

@@ -88,13 +88,7 @@ std::string write_page(const std::string& folder, const StudyResult& result) {
                  name),
              false});
   }
-  if (!result.comparison.models.empty()) {
-    Report tables{title_of(result.value), "Grains and models, place by place", {}};
-    add_profile_tables(tables, result.comparison);
-    write_report(folder + "/tables.html", tables);
-    report.sections.emplace_back(
-        Text{"Place by place", "tables.html has the grains and the models at every place.", false});
-  }
+  write_profile_tables(folder, report, result.comparison);
   const int lead = picture_first(report);
   if (!result.warnings.empty()) {
     report.sections.insert(
