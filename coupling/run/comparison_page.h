@@ -22,7 +22,7 @@ Table distances_table(const Comparison& comparison, const std::string& unit,
 Table shapes_table(const Comparison& comparison, const std::string& unit,
                    const std::string& at = "x/h");
 /// Writes folder/tables.html, the comparison place by place (profile_tables of output/tables.h),
-/// and adds to the report where it is; nothing without models.
+/// and adds to the report where it is; nothing without models. A picture then comes first.
 void write_profile_tables(const std::string& folder, Report& report, const Comparison& comparison);
 
 /// Values by radius from 0, drawn to both sides of the axis: 2 n - 1, of a matrix its rows.
