@@ -32,6 +32,36 @@ void put(Draft& draft, const std::vector<Assignment>& assignments, MistakeList& 
   for (const auto& a : assignments) mistakes.attempt([&] { apply(draft, a); });
 }
 
+bool names_key(const std::vector<Assignment>& list, const std::string& path) {
+  return std::any_of(list.begin(), list.end(), [&](const auto& a) { return a.path == path; });
+}
+
+// A study's former name becomes its present one and the keys that it stood for, where none of the
+// lists sets them.
+void take_former_names(const std::vector<std::vector<Assignment>*>& lists) {
+  for (std::vector<Assignment>* list : lists) {
+    std::vector<Assignment> meant;
+    for (Assignment& a : *list) {
+      if (a.path != "study" || a.list || a.items.size() != 1) continue;
+      for (const Study& study : studies()) {
+        for (const FormerName& former : study.former) {
+          if (scalar_text(a.items.front()) != former.name) continue;
+          a.items = {study.name};
+          for (const std::string& text : former.keys) {
+            meant.push_back(parse_override(text));
+            meant.back().origin = a.origin;
+          }
+        }
+      }
+    }
+    std::erase_if(meant, [&](const Assignment& m) {
+      return std::any_of(lists.begin(), lists.end(),
+                         [&](const auto* other) { return names_key(*other, m.path); });
+    });
+    list->insert(list->end(), meant.begin(), meant.end());
+  }
+}
+
 std::string stem(const std::string& file) { return std::filesystem::path(file).stem().string(); }
 
 std::string model_value(const continuum::Parameter& parameter, const std::string& value) {
@@ -57,6 +87,7 @@ Case read_case(const std::string& file, bool quick, const Overrides& overrides) 
                     default_study()));
   }
   std::vector<Assignment> set = parse_overrides(overrides);
+  take_former_names({&base, &fast, &set});
 
   Draft draft;
   draft.file = file;

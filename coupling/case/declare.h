@@ -77,6 +77,12 @@ class SectionKeys {
     keys_.back().plane_words = std::move(plane);
     keys_.back().space_words = std::move(space);
   }
+  /// The section's other keys have an effect only where this one, a list, holds anything.
+  void others_need_any(const std::string& name) {
+    for (Key& key : keys_) {
+      if (key.section == name_ && key.name != name) key.needs.push_back({name_ + "." + name, {}});
+    }
+  }
   void flag(const std::string& name, Binding where, const std::string& meaning) {
     add(name, "-", where, meaning, "").most = 1;
   }

@@ -130,7 +130,8 @@ bool is_unmet(const Need& need, const Case& value) {
         const auto& held = where(const_cast<Case&>(value));  // only read
         using T = std::decay_t<decltype(held)>;
         if constexpr (std::is_same_v<T, std::vector<std::string>>) {
-          return std::none_of(held.begin(), held.end(), is_needed);
+          return need.values.empty() ? held.empty()
+                                     : std::none_of(held.begin(), held.end(), is_needed);
         } else if constexpr (std::is_same_v<T, std::string>) {
           return !is_needed(held);
         } else {
@@ -333,8 +334,9 @@ std::string condition(const Key& key) {
   std::vector<std::string> all;
   if (key.space) all.emplace_back("3D");
   for (const Need& need : key.needs) {
-    all.push_back(
-        fmt::format("{} = {}{}", need.key, fmt::join(need.values, " or "), studies_of(need, key)));
+    const std::string values =
+        need.values.empty() ? " given" : fmt::format(" = {}", fmt::join(need.values, " or "));
+    all.push_back(need.key + values + studies_of(need, key));
   }
   return fmt::format("{}", fmt::join(all, ", "));
 }

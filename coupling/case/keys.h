@@ -21,7 +21,7 @@ inline constexpr std::size_t kMostEntries = 1000;
 /// What gives a key its effect: another one that is (of a list: holds) one of these values.
 struct Need {
   std::string key;                  ///< its path
-  std::vector<std::string> values;  ///< as TOML, words bare
+  std::vector<std::string> values;  ///< as TOML, words bare; of a list empty: any
 };
 
 struct Key {

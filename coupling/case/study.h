@@ -46,9 +46,16 @@ struct LongestPart {
   std::string remark;  ///< on its cost: "; ..."; may be empty
 };
 
+/// A name by which case files of earlier versions call a study.
+struct FormerName {
+  std::string name;
+  std::vector<std::string> keys;  ///< what it meant besides, unless set: "fit.models=[\"osl\"]"
+};
+
 struct Study {
   std::string name;     ///< the word of the case key `study`
   std::string meaning;  ///< for people, one line
+  std::vector<FormerName> former;
   /// Sections of a case file that mean something to it, in the order of its files, besides
   /// [compare] [output] [sweep] and, with grains, [ensemble].
   std::vector<KeySection> sections;

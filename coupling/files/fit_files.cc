@@ -210,7 +210,7 @@ FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides
                         std::size_t of_set) {
   Draft draft;
   draft.file = case_file;
-  draft.value.study = "pile-fit";
+  draft.value.study = "pile";
   MistakeList mistakes;
   if (!case_file.empty()) {
     for (const Assignment& a : read_document(case_file)) {
@@ -228,7 +228,9 @@ FitSetup read_fit_setup(const std::string& case_file, const Overrides& overrides
   }
   mistakes.require_none();
   check_section(draft, "fit");
-  return draft.value.get<FitSetup>();
+  FitSetup setup = draft.value.get<FitSetup>();
+  if (setup.models.empty()) setup.models = kUsualHeapModels;
+  return setup;
 }
 
 // What nobody has chosen follows what there is: the components, and the base where all places are
@@ -262,7 +264,7 @@ void require_no_width(const Overrides& overrides, std::size_t of_set) {
 
 FitOutcome fit_files(const FitRequest& request) {
   Case value;
-  value.study = "pile-fit";
+  value.study = "pile";
   const Overrides overrides = overrides_of(request);
   value.get<FitSetup>() =
       read_fit_setup(request.case_file.empty() ? "" : find_case(request.case_file), overrides,

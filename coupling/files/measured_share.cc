@@ -207,7 +207,7 @@ std::optional<CarriedShare> carried_share(const Field& field) {
 
 std::string share_text(const CarriedShare& s) {
   const std::string error =
-      std::isfinite(s.error) ? fmt::format(" +- {:.2g}", s.error) : std::string();
+      std::isfinite(s.error) ? fmt::format(" ± {:.2g}", s.error) : std::string();
   return fmt::format("{} carry {:.3g}{} of {}", s.carrier, s.share, error, s.carried);
 }
 

@@ -324,7 +324,11 @@ std::vector<Section> fit_pictures(const EnsembleFits& fits) {
   const Observations& seen = fits.observed;
   const char* const from = heap ? "x / h (apex at 0)" : "x / h (load at 0)";
   const std::string best = fits.judgement.best;
-  for (const std::string& component : seen.data.components) {
+  // The vertical stress first: it is what the report begins with.
+  std::vector<std::string> components = seen.data.components;
+  std::stable_partition(components.begin(), components.end(),
+                        [](const std::string& name) { return name == "sigma_yy"; });
+  for (const std::string& component : components) {
     std::vector<Frame> frames = profile_frames(fits, component);
     if (frames.empty()) continue;
     Picture picture =
@@ -342,8 +346,7 @@ std::vector<Section> fit_pictures(const EnsembleFits& fits) {
                    "constants and are smoothed with the kernel of the averaging; finite elements "
                    "lie on their closed forms (table below).",
                    seen.scale.h, seen.scale.unit * seen.scale.h);
-    picture.caption +=
-        fmt::format(" The grey band is one standard error on either side. {}.", weights_note(fits));
+    picture.caption += fmt::format(" {}.", weights_note(fits));
     out.emplace_back(std::move(picture));
   }
   for (Section& section : fit_map_sections(fits, best)) out.push_back(std::move(section));
@@ -355,7 +358,7 @@ std::vector<Section> fit_pictures(const EnsembleFits& fits) {
     }
     if (!frames.empty()) {
       Picture picture = curves(
-          "Where the best model fails: " + best, from,
+          "Where " + best + " fails, over the standard error", from,
           fmt::format("({} - model) / standard error", seen.measured ? "measured" : "grains"),
           frames);
       picture.caption = "Beyond 2 or 3 in a row the model is wrong there.";

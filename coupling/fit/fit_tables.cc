@@ -80,7 +80,7 @@ std::string constants_text(const std::vector<Fit>& fits) {
 
 const std::string& constants_note() {
   static const std::string note =
-      "+-: by leaving one realization out at a time (jackknife), of which intervals are Student's "
+      "±: by leaving one realization out at a time (jackknife), of which intervals are Student's "
       "t of realizations - 1 times it (of ratios of moduli: of their logarithm). Beside it the "
       "errors by the values' covariance, by bootstrap "
       "draws of the realizations, and the 95 % interval by the profile of the misfit.";

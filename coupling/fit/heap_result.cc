@@ -32,6 +32,7 @@ Report page_of(const StudyResult& result, const Realization* first, const Ensemb
     out.sections.emplace_back(packing("Network of forces", drawn()));
   }
   add_rows(out, "How it was made", origin_rows(result));
+  picture_first(out);
   return out;
 }
 

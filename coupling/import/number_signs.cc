@@ -23,7 +23,8 @@ char sign_of_thousands(std::string_view value) {
     const std::size_t end = value.find_first_of(".,", value.rfind(sign) + 1);
     if (end == std::string_view::npos && sign != '\'') continue;
     if (!is_in_thousands(value.substr(0, end), sign)) continue;
-    std::string rest = "0" + std::string(end == std::string_view::npos ? "" : value.substr(end));
+    std::string rest(1, '0');
+    if (end != std::string_view::npos) rest += value.substr(end);
     std::replace(rest.begin(), rest.end(), ',', '.');
     if (foreign_number(rest)) return sign;
   }

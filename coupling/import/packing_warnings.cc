@@ -64,7 +64,7 @@ std::string unsupported(const PackingCheck& check) {
         "units "
         "(N, m, kg)";
   }
-  const std::string error = off > kSupport ? "" : fmt::format(" +- {:.2g}", check.support_error);
+  const std::string error = off > kSupport ? "" : fmt::format(" ± {:.2g}", check.support_error);
   return fmt::format("walls and fixed grains carry {:.3g}{} of the weight: {}", check.support_ratio,
                      error, why);
 }

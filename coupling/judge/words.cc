@@ -385,14 +385,13 @@ JudgementTable table_of(const Judgement& j) {
        [](const auto& m) { return m.equations; }},
       {"free", "Free: numbers that were fitted.", any([](const auto& m) { return m.free > 0; }),
        [](const auto& m) { return fmt::format("{}", m.free); }},
-      {"misfit",
-       "Misfit: squared difference over what the errors make of a true model's; a true model "
-       "exceeds the number beside it in 1 of 100 ensembles.",
+      {"misfit", "Misfit: squared difference over what the errors make of a true model's.",
        any([](const auto& m) { return std::isfinite(m.misfit); }),
        [](const auto& m) { return digits(m.misfit); }},
-      {"chance", "", any([](const auto& m) { return std::isfinite(m.chance); }),
+      {"chance", "Chance: a true model's misfit exceeds it in 1 of 100 ensembles.",
+       any([](const auto& m) { return std::isfinite(m.chance); }),
        [](const auto& m) { return digits(m.chance); }},
-      {"relative L2", "", true,
+      {"relative L2", "Relative L2: root of the squared difference over the signal's square.", true,
        [](const auto& m) { return std::isfinite(m.rel_l2) ? percent(m.rel_l2) : "-"; }},
       {"behind",
        "Behind: squared difference from realizations left out, less the nearest model's, in parts "
@@ -431,6 +430,7 @@ JudgementTable table_of(const Judgement& j) {
   for (const Column& c : columns) {
     if (!c.shown) continue;
     out.header.push_back(c.head);
+    out.meanings.push_back(c.meaning);
     if (!c.meaning.empty()) out.note += (out.note.empty() ? "" : " ") + c.meaning;
   }
   for (const JudgedModel& m : j.models) {

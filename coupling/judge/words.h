@@ -31,7 +31,8 @@ std::string as_sentence(std::string warning);
 struct JudgementTable {
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;  ///< nearest first
-  std::string note;                            ///< what the columns mean
+  std::vector<std::string> meanings;           ///< of the columns; empty: their name says it
+  std::string note;                            ///< all meanings
 };
 /// Columns that hold nothing are left out. Empty without models.
 JudgementTable table_of(const Judgement& judgement);

@@ -6,18 +6,21 @@
 
 namespace grainfield::coupling {
 
+/// What is fitted to heaps where nobody chooses.
+inline const std::vector<std::string> kUsualHeapModels = {"hydrostatic",
+                                                          "cantelaube_minus",
+                                                          "cantelaube_zero",
+                                                          "cantelaube_plus",
+                                                          "cantelaube_continuous",
+                                                          "cantelaube",
+                                                          "osl_yield",
+                                                          "osl",
+                                                          "fpa",
+                                                          "bcc"};
+
 /// What is fitted to piles (coupling/fit).
 struct FitSetup {
-  std::vector<std::string> models = {"hydrostatic",
-                                     "cantelaube_minus",
-                                     "cantelaube_zero",
-                                     "cantelaube_plus",
-                                     "cantelaube_continuous",
-                                     "cantelaube",
-                                     "osl_yield",
-                                     "osl",
-                                     "fpa",
-                                     "bcc"};
+  std::vector<std::string> models;           ///< empty: none is fitted
   std::vector<std::string> finite_elements;  ///< solved with the constants, beside the fits
   std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
   std::vector<double> heights = {0.1, 0.25, 0.4};

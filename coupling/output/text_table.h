@@ -10,6 +10,7 @@ struct Table {
   std::string title, caption;
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> meanings = {};  ///< of the columns, as a page shows under the pointer
 };
 
 /// Columns are padded to one width, so that the text is a table on a terminal too.

@@ -53,6 +53,7 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
                const std::vector<Frame>& frames, bool log_x) {
   Picture picture;
   picture.title = title;
+  picture.curves = true;
   const int columns = frames.size() > 1 ? 2 : 1;
   const int rows = (static_cast<int>(frames.size()) + columns - 1) / columns;
   std::vector<std::string> labels, plots;
@@ -82,6 +83,7 @@ Picture curves(const std::string& title, const std::string& x_label, const std::
         }
         part(fmt::format("${} using 1:2 {}", name, own_look(series)));
       } else if (series.simulation) {
+        picture.band = picture.band || has_band(series);
         if (has_band(series))
           part(
               fmt::format("${} using 1:($2-$3):($2+$3) with filledcurves fc rgb '{}' fs solid 0.8 "

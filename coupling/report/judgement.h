@@ -11,4 +11,8 @@ void add_verdict(Report& report, const Judgement& judgement);
 /// stands before the title: "mono: ".
 std::vector<Section> judgement_tables(const Judgement& judgement, const std::string& of = "");
 
+/// Moves the first picture of curves behind the paragraphs that the report begins with, and returns
+/// how many sections then lead it: what a reader sees first.
+int picture_first(Report& report);
+
 }  // namespace grainfield::coupling

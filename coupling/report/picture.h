@@ -15,6 +15,8 @@ struct Picture {
   std::string program;            ///< gnuplot commands without terminal and output
   int width = 900, height = 500;  ///< pixels
   bool bitmap = false;            ///< PNG (many elements) instead of SVG
+  bool curves = false;            ///< lines over an axis
+  bool band = false;              ///< with the grey band of the grains' standard error
 };
 
 struct Series {

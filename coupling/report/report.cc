@@ -19,7 +19,7 @@ h1{font-size:1.7em;margin-bottom:0}h2{font-size:1.2em;margin:2em 0 .4em;border-b
 .subtitle{color:#666;margin-top:.2em}.verdict{font-size:1.12em;background:#f3f6fa;border-left:5px solid #0072b2;padding:.8em 1em}
 figure{margin:0 0 1em}figure img,figure svg{max-width:100%;height:auto}figcaption{color:#555;font-size:.9em}
 .scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.9em}td,th{padding:.25em .8em;text-align:right;border-bottom:1px solid #e4e4e4}
-td:first-child,th:first-child{text-align:left}th{border-bottom:2px solid #888}.missing{background:#fff4e0;padding:.6em 1em}
+td:first-child,th:first-child{text-align:left}th{border-bottom:2px solid #888}th[title]{text-decoration:underline dotted;cursor:help}.number{white-space:nowrap}.missing,.doubt{background:#fff4e0;padding:.6em 1em}
 )";
 
 std::string escape(const std::string& text) {
@@ -45,7 +45,7 @@ std::string escape(const std::string& text) {
 
 // Names of pages beside this one lead there.
 std::string linked(const std::string& text) {
-  static const std::regex page(R"(\b[a-z0-9_-]+\.html\b)");
+  static const std::regex page(R"(\b[A-Za-z0-9_/-]+\.html\b)");
   return std::regex_replace(text, page, R"(<a href="$&">$&</a>)");
 }
 
@@ -69,7 +69,10 @@ class Page {
     std::istringstream lines(text.body);
     const auto flush = [&] {
       if (!paragraph.empty())
-        out += fmt::format("<p{}>{}</p>\n", text.verdict ? " class=\"verdict\"" : "",
+        out += fmt::format("<p{}>{}</p>\n",
+                           text.verdict ? " class=\"verdict\""
+                           : text.doubt ? " class=\"doubt\""
+                                        : "",
                            linked(escape(paragraph)));
       paragraph.clear();
     };
@@ -85,13 +88,23 @@ class Page {
 
   std::string operator()(const Table& table) const {
     std::string out = heading(table.title) + "<div class=\"scroll\"><table>\n";
-    const auto row = [&](const std::vector<std::string>& cells, const char* tag) {
+    if (!table.header.empty()) out += "<tr>";
+    for (std::size_t k = 0; k < table.header.size(); ++k) {
+      const bool told = k < table.meanings.size() && !table.meanings[k].empty();
+      out += fmt::format("<th{}>{}</th>",
+                         told ? " title=\"" + escape(table.meanings[k]) + "\"" : std::string(),
+                         escape(table.header[k]));
+    }
+    if (!table.header.empty()) out += "</tr>\n";
+    for (const auto& cells : table.rows) {
       out += "<tr>";
-      for (const std::string& cell : cells) out += fmt::format("<{0}>{1}</{0}>", tag, escape(cell));
+      for (const std::string& cell : cells) {
+        const bool number = cell.find("±") != std::string::npos && cell.size() < 40;
+        out +=
+            fmt::format("<td{}>{}</td>", number ? " class=\"number\"" : "", linked(escape(cell)));
+      }
       out += "</tr>\n";
-    };
-    if (!table.header.empty()) row(table.header, "th");
-    for (const auto& cells : table.rows) row(cells, "td");
+    }
     out += "</table></div>\n";
     if (!table.caption.empty()) out += "<p class=\"subtitle\">" + escape(table.caption) + "</p>\n";
     return out;
@@ -108,9 +121,13 @@ class Page {
       else
         image = embed(picture, drawing.bytes);
     }
+    std::string caption = picture.caption;
+    if (picture.band) {
+      caption += std::string(caption.empty() ? "" : " ") +
+                 "The grey band is one standard error on either side.";
+    }
     return heading(picture.title) + "<figure>" + image +
-           (picture.caption.empty() ? ""
-                                    : "<figcaption>" + escape(picture.caption) + "</figcaption>") +
+           (caption.empty() ? "" : "<figcaption>" + escape(caption) + "</figcaption>") +
            "</figure>\n";
   }
 

@@ -15,6 +15,7 @@ struct Text {
   std::string title;     ///< heading, or empty
   std::string body;      ///< plain text; an empty line starts a paragraph
   bool verdict = false;  ///< shown large
+  bool doubt = false;    ///< in a box of its own colour
 };
 
 using Section = std::variant<Text, Picture, Table>;

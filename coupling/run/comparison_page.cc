@@ -7,12 +7,18 @@
 #include "continuum/constants.h"
 #include "coupling/judge/words.h"
 #include "coupling/output/tables.h"
+#include "coupling/report/judgement.h"
 
 namespace grainfield::coupling {
 namespace {
 
 std::string shown(double value, int digits = 3) {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
+}
+
+// "rough" of rough=layer (base=rough).
+std::string legend_of(const ModelProfiles& model) {
+  return model.label.starts_with(model.key + "=") ? model.key : model.label;
 }
 
 }  // namespace
@@ -23,7 +29,8 @@ Frame profile_frame(const Comparison& c, std::size_t profile) {
   if (p.error.size() > 0) out.series.front().error = p.error / c.scale.unit;
   for (std::size_t m = 0; m < c.models.size(); ++m) {
     const DrawnLine line = drawn_line(c, m, profile);
-    out.series.push_back({c.models[m].label, line.x / c.scale.h, line.y / c.scale.unit, {}, false});
+    out.series.push_back(
+        {legend_of(c.models[m]), line.x / c.scale.h, line.y / c.scale.unit, {}, false});
   }
   return out;
 }
@@ -86,10 +93,17 @@ Table shapes_table(const Comparison& c, const std::string& unit, const std::stri
   return out;
 }
 
-void add_profile_tables(Report& report, const Comparison& c) {
+void write_profile_tables(const std::string& folder, Report& report, const Comparison& c) {
   if (c.models.empty()) return;
-  report.sections.emplace_back(Text{"Place by place", profiles_note(c), false});
-  for (Table& table : profile_tables(c)) report.sections.emplace_back(std::move(table));
+  Report tables{
+      report.title, fmt::format("The {} and the models, place by place", c.subject()), {}};
+  tables.sections.emplace_back(Text{"", profiles_note(c), false});
+  for (Table& table : profile_tables(c)) tables.sections.emplace_back(std::move(table));
+  write_report(folder + "/tables.html", tables);
+  report.sections.emplace_back(Text{
+      "Place by place",
+      fmt::format("tables.html has the {} and the models at every place.", c.subject()), false});
+  picture_first(report);
 }
 
 Eigen::VectorXd both_sides(const Eigen::VectorXd& by_radius) {

@@ -10,6 +10,7 @@ namespace grainfield::coupling {
 
 /// Grains, with the band of their error, and models: lengths in h, stresses in
 /// comparison.scale.unit.
+/// The legend has a model's own label without its settings, which distances_table tells.
 Frame profile_frame(const Comparison& comparison, std::size_t profile);
 std::vector<Frame> profile_frames(const Comparison& comparison);
 
@@ -20,9 +21,9 @@ Table distances_table(const Comparison& comparison, const std::string& unit,
                       const std::string& at = "x/h");
 Table shapes_table(const Comparison& comparison, const std::string& unit,
                    const std::string& at = "x/h");
-/// Appends what tables for reading show of every place (profile_tables of output/tables.h); nothing
-/// without models.
-void add_profile_tables(Report& report, const Comparison& comparison);
+/// Writes folder/tables.html, the comparison place by place (profile_tables of output/tables.h),
+/// and adds to the report where it is; nothing without models. A picture then comes first.
+void write_profile_tables(const std::string& folder, Report& report, const Comparison& comparison);
 
 /// Values by radius from 0, drawn to both sides of the axis: 2 n - 1, of a matrix its rows.
 Eigen::VectorXd both_sides(const Eigen::VectorXd& by_radius);

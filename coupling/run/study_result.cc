@@ -13,6 +13,7 @@
 #include "coupling/output/judgement.h"
 #include "coupling/output/vtu.h"
 #include "coupling/report/judgement.h"
+#include "coupling/run/comparison_page.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/statistics/spread.h"
@@ -87,10 +88,12 @@ std::string write_page(const std::string& folder, const StudyResult& result) {
                  name),
              false});
   }
+  write_profile_tables(folder, report, result.comparison);
+  const int lead = picture_first(report);
   if (!result.warnings.empty()) {
-    const auto at = report.sections.begin() + (report.sections.empty() ? 0 : 1);
     report.sections.insert(
-        at, Text{"To mind", fmt::format("{}", fmt::join(result.warnings, "\n\n")), false});
+        report.sections.begin() + lead,
+        Text{"To mind", fmt::format("{}", fmt::join(result.warnings, "\n\n")), false, true});
   }
   return write_report(folder + "/report.html", report).complaint();
 }

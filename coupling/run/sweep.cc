@@ -20,11 +20,10 @@ Table overview(const Case& value, const std::vector<SweepCase>& members,
                const std::vector<OverviewColumn>& columns) {
   Table table;
   table.title = "Side by side";
-  table.caption = "Each folder holds the member's own report.html.";
-  table.header = {value.sweep.key, "folder"};
+  table.header = {value.sweep.key, "report"};
   for (const OverviewColumn& column : columns) table.header.push_back(column.heading);
   for (std::size_t m = 0; m < members.size(); ++m) {
-    std::vector<std::string> row{value.sweep.values[m], members[m].suffix};
+    std::vector<std::string> row{value.sweep.values[m], members[m].suffix + "/report.html"};
     for (const OverviewColumn& column : columns) {
       row.push_back(shown_with_error(results[m].summary, column.key, column.error_key));
       if (row.back().empty()) row.back() = "-";

@@ -70,7 +70,7 @@ std::string differences_sentence(const std::vector<SweepDifference>& differences
   for (const SweepDifference& d : differences) {
     if (d.p_value < nearest->p_value) nearest = &d;
     if (d.p_holm < kLevel) {
-      found.push_back(fmt::format("{} of {} is {} that of {} by {:.3g} +- {:.2g} (p = {:.2g})",
+      found.push_back(fmt::format("{} of {} is {} that of {} by {:.3g} ± {:.2g} (p = {:.2g})",
                                   d.heading, names[d.member], d.difference > 0 ? "above" : "below",
                                   names.front(), std::fabs(d.difference), d.error, d.p_value));
     }
@@ -81,7 +81,7 @@ std::string differences_sentence(const std::vector<SweepDifference>& differences
       differences.size(), differences.size() == 1 ? "" : "s");
   if (!found.empty()) return fmt::format("Different {}: {}.", how, fmt::join(found, "; "));
   return fmt::format(
-      "Nothing differs {}. The least p is that of {} of {} against {}: {:+.3g} +- {:.2g}, p = "
+      "Nothing differs {}. The least p is that of {} of {} against {}: {:+.3g} ± {:.2g}, p = "
       "{:.2g}.",
       how, nearest->heading, names[nearest->member], names.front(), nearest->difference,
       nearest->error, nearest->p_value);

@@ -8,7 +8,6 @@
   STUDY(point_load_verdict) \
   STUDY(pile) \
   STUDY(pile_fields) \
-  STUDY(pile_fit) \
   STUDY(cone) \
   STUDY(lattice_pile) \
   STUDY(sample) \

@@ -16,7 +16,11 @@ struct Command {
   Writes writes = Writes::nothing;
 
   /// Of the file that it writes: a table, or HDF5.
-  std::string ending() const { return words.front() == "model" ? ".csv" : ".h5"; }
+  std::string ending() const {
+    const std::string& command = words.front();
+    if (command == "compare" || command == "fit" || command == "structure") return "";  // folders
+    return command == "model" ? ".csv" : ".h5";
+  }
   Start to(const std::string& output) const {
     Start start{words, {}, "", {}};
     if (!output.empty()) start.words.insert(start.words.end(), {"-o", output});

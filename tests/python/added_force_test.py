@@ -216,6 +216,7 @@ def test_marked_and_not_resumed_without(tmp_path):
     gf.write(tmp_path / "state.h5", engine.packing())
     assert "added_forces: glue\n  former_added_forces: nothing" in program("info", tmp_path / "state.h5")
     state = gf.read(tmp_path / "state.h5")
+    assert "<td>added forces</td><td>glue</td>" in state._repr_html_()
     again = gf.Engine(state, material=LINEAR)
     assert error_of(again.step) == (
         "Engine: this packing comes from a run with forces of a Python function: found none of glue; add each with "
@@ -239,7 +240,7 @@ def test_averages_and_fits_say_so(tmp_path):
         field = gf.average(engine.packing(), frame="packing", grid=(5, 5))
         field_warnings = [str(w.message) for w in caught]
     assert any("forces of a Python function act on these grains: lambda" in line for line in field_warnings)
-    assert field.attributes["added_forces"] == "lambda"
+    assert field.attributes["added_forces"] == "lambda" and "added forces: lambda" in field._repr_html_()
     gf.write(tmp_path / "state.h5", engine.packing())
     said = subprocess.run([PROGRAM, "average", tmp_path / "state.h5", "--frame", "packing", "-o", tmp_path / "field.h5"],
                           capture_output=True, text=True).stderr

@@ -297,6 +297,13 @@ def test_contacts_are_any_table():
         gf.packing(**row, contacts=[(0, 1, -1.0, 0.5)])
 
 
+def test_masked_points_are_refused():
+    points = np.ma.array([[0.0, -0.1], [0.1, -0.1]], mask=[[False, False], [True, False]])
+    for call in (lambda: gf.model("flamant", F=1)(points), lambda: gf.average(heap(), points=points)):
+        with pytest.raises(ValueError, match="points: found 1 masked values of 4"):
+            call()
+
+
 def test_masked_values_are_none():
     x = np.ma.array([0, 0.0199], mask=[False, True])
     with pytest.raises(ValueError, match="grains.x: found 1 masked values of 2"):

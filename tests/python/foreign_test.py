@@ -43,6 +43,12 @@ def test_options_are_arguments(tmp_path):
                              fixed="id=0,2", dim=2)
     assert made.contacts.forces.tolist() == [[-2.5, 0], [-2.5, 0]] and (made.contacts.friction == 0.25).all()
     assert made.masses[0] == pytest.approx(25 * np.pi * 0.01**2) and made.fixed.tolist() == [True, False, True]
+    for words, turned in (("pairs", 2), ("walls", 0)):
+        part = gf.import_packing("csv", *files, density="2.5 g/cm2", gravity=(0, 0), periodic={"x": (-0.01, 0.05)}, dim=2,
+                                 flip_forces=words)
+        assert (part.contacts.forces[:, 0] < 0).sum() == turned
+    with pytest.raises(ValueError, match="--flip-forces=none: allowed: --flip-forces, --flip-forces=pairs"):
+        gf.import_packing("csv", *files, density=1, flip_forces="none")
     assert made.cell["periodic"].tolist() == [True, False] and made.walls.names == ["floor", "lid"]
     assert made.loaded_grain == 1 and made.applied_force.tolist() == [0, -3]
     bare = gf.import_packing("csv", files[0], columns=["density=1000"], without_contacts=True)

@@ -86,6 +86,8 @@ WRONG = {
     "shape": (lambda p, f: np.zeros((len(p), 2)), r"found stresses of shape \(\d+, 2\) for \d+ points from \(.*\) on, allowed: \(\d+, 3\)"),
     "nan": (lambda p, f: np.where(p[:, :1] > 0.1, np.nan, np.zeros((len(p), 3))), r"found the stress \[nan, nan, nan\] at \(0\.1\d*, -.*\), allowed: finite"),
     "raises": (lambda p, f: 1 / 0, r"ZeroDivisionError: division by zero at \(.*, -.*\)"),
+    "masked": (lambda p, f: np.ma.masked_all((len(p), 3)), r"ValueError: stresses: found \d+ masked values of \d+"),
+    "complex": (lambda p, f: np.zeros((len(p), 3), complex), "ValueError: found complex stresses, allowed: real ones"),
     "words": (lambda p, f: [["a", "b", "c"]] * len(p), r"ValueError: could not convert string to float"),
 }
 

@@ -12,6 +12,7 @@ import numpy as np
 from . import _core
 from ._data import PLANE_STRESS, SPACE_STRESS, Field, Packing
 from ._model import Model
+from ._packing import whole
 from ._progress import Progress
 from ._results import CompareResult, FitResult, Result, Structure
 
@@ -42,7 +43,7 @@ def _grid(grid: Any) -> str:
 def _points(points: Any) -> Any:
     if points is None:
         return None
-    points = np.asarray(points, float)
+    points = np.asarray(whole("points", points), float)
     return points.reshape(1, -1) if points.ndim == 1 else points
 
 

@@ -40,7 +40,7 @@ def import_packing(
     load: tuple[int, Sequence[float]] | None = None,
     ids: str | os.PathLike | None = None,
     without_contacts: bool = False,
-    flip_forces: bool = False,
+    flip_forces: bool | str = False,
     leave_out_distant: bool = False,
 ) -> Packing | Collection:
     """The packing in files of another program, or a Collection of several steps (docs/import.md), as
@@ -50,7 +50,8 @@ def import_packing(
     columns: {"i,j": "c_ids[1..2]", "radius": "c_r", "mass": 0.1}. gravity: m/s2; default 9.81 down.
     density: kg/m3 (2D: kg/m2) or "2.5 g/cm3". walls: "floor:y=0:fix=f_floor", one or more. periodic:
     {"x": (0, 0.1)}, m. fixed: "type=2". steps: a number, several, {number: name} or "all"; default the
-    last. time_step: s, of a dump. load: (id, force, N). ids: table of `export --to lammps`.
+    last. time_step: s, of a dump. load: (id, force, N). ids: table of `export --to lammps`. flip_forces:
+    True turns all forces, "pairs" those between grains, "walls" those with walls.
 
     .report of what is returned holds what the command prints; its warnings are Python warnings. gf.write
     keeps the packings. Raises ValueError with the command's line.
@@ -81,9 +82,10 @@ def import_packing(
     option("group", group)
     option("load", None if load is None else f"{load[0]}={_vector(load[1])}")
     option("ids", None if ids is None else os.fspath(ids))
-    for name, wanted in (("without-contacts", without_contacts), ("flip-forces", flip_forces),
-                         ("leave-out-distant", leave_out_distant)):
+    for name, wanted in (("without-contacts", without_contacts), ("leave-out-distant", leave_out_distant)):
         words += [f"--{name}"] if wanted else []
+    if flip_forces:
+        words.append("--flip-forces" if flip_forces is True else f"--flip-forces={flip_forces}")
     with tempfile.TemporaryDirectory(prefix="grainfield-") as folder:
         file = os.path.join(folder, "packing.h5")
         report = _program.call(*words, "-o", file)

@@ -10,6 +10,7 @@ from typing import Any, Callable, Mapping, Sequence
 import numpy as np
 
 from . import _core
+from ._packing import whole
 
 _NONE = float("nan")
 _MOST = 1e60  # of the numbers of a specimen
@@ -135,7 +136,9 @@ class Model:
             made = self.function(points.copy(), facts, **values)
             if made is None:
                 return None
-            made = np.asarray(made, float)
+            if np.iscomplexobj(made):
+                raise ValueError("found complex stresses, allowed: real ones")
+            made = np.asarray(whole("stresses", made), float)
         except Exception as error:
             where = self._first_failure(points, facts, values)
             raise RuntimeError(f"model {self.name}: {type(error).__name__}: {error}{where}{told}") from error

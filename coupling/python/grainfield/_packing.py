@@ -22,8 +22,8 @@ _IDS = ("id", "i", "j")
 _ARGUMENT = {("grains", "id"): "ids", ("grains", "outline"): "outlines"}
 
 
-def _whole(where: str, value: Any) -> Any:
-    """A masked array holds values that are none."""
+def whole(where: str, value: Any) -> Any:
+    """The value, unless masked: a masked array holds values that are none."""
     if isinstance(value, np.ma.MaskedArray) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{where}: found {int(np.ma.getmaskarray(value).sum())} masked values of {value.size}, "
                          "allowed: none; x[~x.mask] of every column leaves their rows out")
@@ -90,7 +90,7 @@ def _columns(table: str, given: Mapping[str, Any], dim: int, vectors: Mapping[st
         if value is None:
             continue
         name = _ARGUMENT.get((table, column), column)
-        array = np.asarray(_whole(f"{table}.{name}", value))
+        array = np.asarray(whole(f"{table}.{name}", value))
         if column in vectors:
             if array.ndim != 2 or array.shape[1] != dim:
                 raise ValueError(f"{table}.{name}: found an array of shape {array.shape}, "
@@ -154,7 +154,7 @@ def packing(
     """
     dim = 2 if z is None else 3
     for name, value in (("x", x), ("y", y), ("z", z), ("radius", radius)):
-        _whole(f"grains.{name}", value)
+        whole(f"grains.{name}", value)
     x = np.atleast_1d(np.asarray(x, float))
     n = len(x)
     given: dict[str, Any] = {"x": x, "id": np.arange(n) if ids is None else ids}

@@ -9,6 +9,7 @@ import numpy as np
 
 _MOST_ROWS = 12  # of a table in a notebook: the first and the last half of them
 _AXES = ("x", "y", "z")
+_ADDED = ("added_forces", "former_added_forces")  # names of forces that a Python function adds or added
 
 
 def number(value: Any) -> str:
@@ -35,6 +36,7 @@ def packing(state: Any) -> str:
     across = f"{radii.min():.4g} to {radii.max():.4g} m" if len(radii) else "-"
     rows = [("grains", len(state)), ("contacts", len(state.contacts)), ("walls", ", ".join(state.walls.names) or "none"),
             ("radii", across), ("gravity", f"{np.round(state.gravity, 6).tolist()} m/s2"), ("time", f"{state.time:.6g} s")]
+    rows += [(name.replace("_", " "), state.attributes[name]) for name in _ADDED if name in state.attributes]
     return table([f"Packing, {state.dim}D", ""], rows)
 
 
@@ -48,6 +50,8 @@ def field(of: Any) -> str:
     rows = [(name, of.units[name], *extent(of[name]), "yes" if of.error(name) is not None else "no")
             for name in of.columns]
     shown = paragraph(title) + table(["column", "unit", "least", "largest", "errors"], rows)
+    shown += "".join(paragraph(f"{name.replace('_', ' ')}: {of.attributes[name]}")
+                     for name in _ADDED if name in of.attributes)
     return shown + "".join(paragraph(line) for line in of.gaps)
 
 

@@ -21,8 +21,7 @@ void add_cone_profiles(Report& report, const StudyResult& result, const ConePage
   picture.caption = fmt::format(
       "Mean over the angle about the axis; on the base the forces on the floor, above it {}. "
       "ρgh = {:.4g} Pa, h = {:.4g} m. Models are smoothed alike; their cone has the flanks of the "
-      "grains', its apex above theirs where that is round. The grey band is one standard "
-      "error on either side.",
+      "grains', its apex above theirs where that is round.",
       page.averaged, c.scale.unit, c.scale.h);
   report.sections.emplace_back(std::move(picture));
 
@@ -131,7 +130,6 @@ Report cone_page(const StudyResult& result, const Realization* first, const Cone
   if (!c.models.empty()) {
     report.sections.emplace_back(distances_table(c, "ρgh", "r/h"));
     report.sections.emplace_back(shapes_table(c, "ρgh", "r/h"));
-    add_profile_tables(report, c);
   }
   add_rows(report, "Figures", figure_rows(result));
   add_rows(report, "How it was made", origin_rows(result));

@@ -15,9 +15,8 @@ namespace {
 std::string scale_note(const Comparison& c) {
   if (c.scale.stress == "N/m") return c.scale.note + ".";
   return fmt::format(
-      "In units of h = {:.4g} m and rho g h = {:.4g} N/m (means; every pile is scaled by its own). "
-      "The grey band is one standard error over {} realization{} on either side.",
-      c.scale.h, c.scale.unit, c.realizations, c.realizations == 1 ? "" : "s");
+      "In units of h = {:.4g} m and rho g h = {:.4g} N/m (means; every pile is scaled by its own).",
+      c.scale.h, c.scale.unit);
 }
 
 void add_base(Report& report, const PileReport& in) {
@@ -101,16 +100,14 @@ void add_maps(Report& report, const PileReport& in) {
 std::string error_note(int realizations) {
   if (realizations < 2) return "One pile: no errors.";
   return fmt::format(
-      "Means over {} piles +- standard errors, which are themselves uncertain by {:.0f} %.",
+      "Means over {} piles ± standard errors, which are themselves uncertain by {:.0f} %.",
       realizations, 100 / std::sqrt(2.0 * (realizations - 1)));
 }
 
 void add_tables(Report& report, const PileReport& in) {
   const Comparison& c = in.comparison;
-  if (!c.results.empty()) {
-    report.sections.emplace_back(distances_table(c, c.scale.stress));
-    add_profile_tables(report, c);
-  }
+  if (!c.results.empty()) report.sections.emplace_back(distances_table(c, c.scale.stress));
+  report.sections.insert(report.sections.end(), in.fit_tables.begin(), in.fit_tables.end());
   if (!in.changes.rows.empty()) report.sections.emplace_back(in.changes);
   add_rows(report, "Figures", in.figures, error_note(c.realizations));
   add_rows(report, "How it was made", in.made);
@@ -123,6 +120,7 @@ Report pile_report(const PileReport& in) {
   report.title = in.title;
   report.subtitle = in.subtitle;
   add_verdict(report, in.comparison.judgement);
+  report.sections.insert(report.sections.end(), in.fit_pictures.begin(), in.fit_pictures.end());
   if (in.pile != nullptr) {
     report.sections.emplace_back(grains_by_age("The pile by time of drop", *in.pile));
     report.sections.emplace_back(packing("Network of forces", *in.pile));

@@ -23,7 +23,8 @@ struct PileReport {
   Field map;             ///< scaled to comparison's h and rho g h, heap's frame; may be empty
   std::string averaged;  ///< how, for captions: "coarse graining, lucy kernel, w = 0.0055 m"
   Table changes;         ///< what each changed gravity did; without rows: left out
-  std::optional<Picture> beside;  ///< measured base forces and the grains'
+  std::optional<Picture> beside;                  ///< measured base forces and the grains'
+  std::vector<Section> fit_pictures, fit_tables;  ///< of models with free constants; may be empty
   ReportRows figures, made;
 };
 

@@ -1,12 +1,19 @@
 #include "coupling/studies/pile/study.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
+#include <stdexcept>
+#include <utility>
 
+#include "coupling/fit/figures.h"
+#include "coupling/fit/fit_report.h"
+#include "coupling/fit/heap_result.h"
 #include "coupling/heap/scaled.h"
 #include "coupling/heap/setup.h"
 #include "coupling/models/subject.h"
@@ -30,7 +37,7 @@ namespace {
 class PileAnalysis {
  public:
   PileAnalysis(const Case& value, const std::vector<std::string>& files, int threads)
-      : value_(value), files_(files), piles_(value, files, threads) {}
+      : value_(value), files_(files), threads_(threads), piles_(value, files, threads) {}
 
   StudyResult run() {
     piles_.collect();
@@ -47,14 +54,21 @@ class PileAnalysis {
       out.sweep_charts.push_back(*beside);
     }
     const std::string averaged = describe(piles_.methods.front().options);
-    out.page = [averaged, beside, flat = flat_piles()](const StudyResult& result,
-                                                       const Realization* first) {
-      return page(result, first, averaged, beside, flat);
+    const std::shared_ptr<const Fitted> fitted = fit_models(out);
+    out.page = [averaged, beside, fitted, flat = flat_piles()](const StudyResult& result,
+                                                               const Realization* first) {
+      return page(result, first, averaged, beside, fitted.get(), flat);
     };
     return out;
   }
 
  private:
+  // The fits, and the piles' own lines, which stay on the page.
+  struct Fitted {
+    std::shared_ptr<const EnsembleFits> fits;
+    Comparison piles;
+  };
+
   // N/m, over the base between the mean feet.
   BaseProfile base_profile() const {
     const Field base = piles_.base.mean();
@@ -230,6 +244,29 @@ class PileAnalysis {
     for (std::string& line : dip_lines(dip)) judgement.findings.push_back(std::move(line));
   }
 
+  // The models of [fit] with free constants: their judgement, lines and constants become the run's,
+  // and the piles' lines stand beside theirs. Null without such models.
+  std::shared_ptr<const Fitted> fit_models(StudyResult& out) const {
+    const FitSetup& setup = value_.get<FitSetup>();
+    if (setup.models.empty()) return nullptr;
+    const auto observe = [&](const FitSetup& with) {
+      return observe_heaps(with, heaps_of_runs(files_), threads_);
+    };
+    HeapResult made = heap_result(value_, observe(setup), threads_, observe);
+    for (auto& [key, figure] : made.study.summary) out.summary.insert_or_assign(key, figure);
+    out.constants = std::move(made.study.constants);
+    out.texts = std::move(made.study.texts);
+    out.overview = std::move(made.study.overview);
+    const auto fitted = std::make_shared<Fitted>(
+        Fitted{made.fits, std::exchange(out.comparison, std::move(made.study.comparison))});
+    Comparison& now = out.comparison;
+    now.judgement.findings = fitted->piles.judgement.findings;
+    for (const auto* lines : {&fitted->piles.profiles, &fitted->piles.beside}) {
+      now.beside.insert(now.beside.end(), lines->begin(), lines->end());
+    }
+    return fitted;
+  }
+
   // A row for every changed gravity, from the least one.
   static Table changes_of(const Summary& summary) {
     Table table{
@@ -283,7 +320,7 @@ class PileAnalysis {
 
   static Report page(const StudyResult& result, const Realization* first,
                      const std::string& averaged, const std::optional<Chart>& beside,
-                     const std::string& flat) {
+                     const Fitted* fitted, const std::string& flat) {
     PileReport in;
     if (beside) in.beside = beside->picture();
     in.title = title_of(result.value);
@@ -301,7 +338,12 @@ class PileAnalysis {
         in.changed.emplace_back(fmt::format("g = {:g} m/s2", state.gravity.norm()), &state);
       }
     }
-    in.comparison = result.comparison;
+    in.comparison = fitted != nullptr ? fitted->piles : result.comparison;
+    in.comparison.judgement = result.comparison.judgement;
+    if (fitted != nullptr) {
+      in.fit_pictures = fit_pictures(*fitted->fits);
+      in.fit_tables = fit_tables(*fitted->fits);
+    }
     in.map = result.map;
     in.averaged = averaged;
     in.figures = figure_rows(result);
@@ -313,6 +355,7 @@ class PileAnalysis {
 
   const Case& value_;
   const std::vector<std::string>& files_;
+  int threads_;
   PileEnsemble piles_;
 };
 
@@ -320,23 +363,34 @@ class PileAnalysis {
 
 StudyResult analyse_pile(const Case& value, const std::vector<std::string>& realizations,
                          int threads) {
-  StudyResult out = PileAnalysis(value, realizations, threads).run();
-  return out;
+  return PileAnalysis(value, realizations, threads).run();
 }
 
 Study pile_study() {
   Study out;
   out.name = "pile";
-  out.meaning = "grains poured into a pile: base pressure and dip, repose, stress and density";
+  out.meaning =
+      "grains poured into a pile: base pressure and dip, repose, stress and density, and stress "
+      "models compared with them or fitted to them";
+  out.former = {
+      {"pile-fit", {fmt::format("fit.models=[\"{}\"]", fmt::join(kUsualHeapModels, "\", \""))}}};
   describe_piles(out);
   out.sections.push_back(kChangeKeys);
   out.sections.push_back(kAverageKeys);
   out.sections.push_back(kHeapKeys);
+  out.sections.push_back(kFitKeys);
   out.sections.push_back(kMeasuredKeys);
+  out.figures.push_back(figures_of_fits);
   out.figures.push_back(measured_figures);
   out.check = [](const Case& value) {
     check_heap_windows(value.get<HeapSetup>());
     require_subject(value.models, Subject::heap, 2, "compare.models");
+    if (!value.models.empty() && !value.get<FitSetup>().models.empty()) {
+      throw std::invalid_argument(
+          fmt::format("compare.models: found {}, allowed: none with fit.models; there "
+                      "NAME:p=0.3 gives a model its constants",
+                      value.models.front().label));
+    }
     const MeasuredSetup& measured = value.get<MeasuredSetup>();
     if (!measured.field.empty()) measured_base(measured);
   };

@@ -11,23 +11,13 @@
 namespace grainfield::coupling {
 namespace {
 
-// With the share of the depth in its title.
-Frame frame(const Comparison& c, std::size_t k) {
-  const Profile& p = c.profiles[k];
-  Frame out = profile_frame(c, k);
-  if (p.depth < c.scale.h && p.key != "base")
-    out.title += fmt::format(" ({:.2g} h)", p.depth / c.scale.h);
-  return out;
-}
-
 void add_profiles(Report& report, const Comparison& c) {
   std::vector<Frame> depths, base;
   for (std::size_t k = 0; k < c.profiles.size(); ++k)
-    (c.profiles[k].key == "base" ? base : depths).push_back(frame(c, k));
+    (c.profiles[k].key == "base" ? base : depths).push_back(profile_frame(c, k));
   const std::string caption = fmt::format(
       "Vertical pressure added by the load, in units of F/h = {:.4g} N/m (F = {:.4g} N, h = {:.4g} "
-      "m). The models are smoothed with the kernel of the averaging. The grey band is one standard "
-      "error on either side.",
+      "m). The models are smoothed with the kernel of the averaging.",
       c.scale.unit, c.scale.load, c.scale.h);
   const auto add = [&](const std::string& title, const std::vector<Frame>& frames) {
     if (frames.empty()) return;
@@ -83,7 +73,6 @@ void add_tables(Report& report, const PointLoadReport& in) {
   const Comparison& c = in.comparison;
   report.sections.emplace_back(distances_table(c, "F/h"));
   report.sections.emplace_back(shapes_table(c, "F/h"));
-  add_profile_tables(report, c);
   add_rows(report, "Figures", in.figures);
   add_rows(report, "How it was made", in.made);
 }

@@ -18,8 +18,7 @@ void add_radial(Report& report, const Comparison& c) {
   picture.caption = fmt::format(
       "Vertical pressure added by the load, mean over the angle about it, in units of F/h² = "
       "{:.4g} "
-      "Pa (F = {:.4g} N, h = {:.4g} m). The models are smoothed with the kernel of the averaging. "
-      "The grey band is one standard error on either side.",
+      "Pa (F = {:.4g} N, h = {:.4g} m). The models are smoothed with the kernel of the averaging.",
       c.scale.unit, c.scale.load, c.scale.h);
   report.sections.emplace_back(std::move(picture));
 }
@@ -97,7 +96,6 @@ Report space_load_page(const StudyResult& result, const Realization* first,
   add_before(report, page);
   report.sections.emplace_back(distances_table(c, "F/h²", "r/h"));
   report.sections.emplace_back(shapes_table(c, "F/h²", "r/h"));
-  add_profile_tables(report, c);
   for (Section& section : predicted_sections(result.summary)) {
     report.sections.push_back(std::move(section));
   }

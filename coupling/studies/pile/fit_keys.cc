@@ -1,10 +1,9 @@
-// Keys of fits of stress models to piles.
-#include "coupling/studies/pile_fit/keys.h"
-
+// Keys of fits of stress models to piles: [fit].
 #include "coupling/case/declare.h"
 #include "coupling/fit/models.h"
 #include "coupling/fit/open_models.h"
 #include "coupling/observe/setup.h"
+#include "coupling/studies/pile/keys.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(FitSetup, MEMBER)
 
@@ -17,7 +16,7 @@ using std::string;
 
 void declare_fit_keys(SectionKeys s) {
   std::vector<string> names;
-  string meaning = "models that are fitted and ranked";
+  string meaning = "models that are fitted and ranked, none where the list is empty";
   for (const RegistryEntry& model : heap_entries({})) {
     names.push_back(model.name);
     meaning += (names.size() == 1 ? ": " : "; ") + model.name;
@@ -31,6 +30,7 @@ void declare_fit_keys(SectionKeys s) {
   }
   s.word("models", IN(models), names, meaning + "; or " + kOpenModels, "Roul 4.3, 4.4");
   s.or_else(refused_heap_model);
+  s.or_none();
   s.word(
       "finite_elements", IN(finite_elements), {"fe_osl_wedge", "fe_mohr_coulomb_wedge"},
       "finite-element models that are solved with the measured slope and the fitted constants and "
@@ -63,6 +63,7 @@ void declare_fit_keys(SectionKeys s) {
            "that (points in the wrong region)");
   s.number("bootstrap", "-", IN(bootstrap), {0, 10000},
            "draws of the piles for the bootstrap errors; below 10: none");
+  s.others_need_any("models");
 }
 
 }  // namespace grainfield::coupling
