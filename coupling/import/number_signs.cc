@@ -14,8 +14,8 @@ namespace {
 // Rows that are searched, at least: on until one tells a comma or a point.
 constexpr std::size_t kSearched = 1000;
 
-// "50.000,0", "50,000.0", "50'000.0": two signs, or one that is none of decimals. Returns the sign of
-// thousands, else 0.
+// "50.000,0", "50,000.0", "50'000.0": two signs, or one that is none of decimals. Returns the sign
+// of thousands, else 0.
 char sign_of_thousands(std::string_view value) {
   for (const char sign : {'.', ',', '\''}) {
     const std::size_t first = value.find(sign);

@@ -255,7 +255,12 @@ AddedForce::Loads sticky(const GrainsNow&, const ContactsNow* contacts) {
 TEST(AddedForces, PairForcesKeepMomentum) {
   for (const int dim : {2, 3}) {
     auto engine = cloud(dim, 2);
-    add(*engine, sticky, 1, true);
+    long pushed = 0;  // contacts, over all steps
+    const auto counted = [&](const GrainsNow& grains, const ContactsNow* contacts) {
+      pushed += contacts->normals.rows();
+      return sticky(grains, contacts);
+    };
+    add(*engine, counted, 1, true);
     const auto momenta = [&] {
       Vec3 p(0, 0, 0), l(0, 0, 0);
       for (const Grain& g : engine->snapshot().grains) {
@@ -270,7 +275,7 @@ TEST(AddedForces, PairForcesKeepMomentum) {
     const auto [p, l] = momenta();
     EXPECT_LT((p - p0).norm(), 1e-14);
     EXPECT_LT((l - l0).norm(), 1e-14);
-    EXPECT_GT(engine->measure().contacts, 0);
+    EXPECT_GT(pushed, 3000);  // ten a step
   }
 }
 
