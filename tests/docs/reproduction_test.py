@@ -406,7 +406,7 @@ def test_a_compression_is_read_where_a_state_is_recorded():
 
 def test_strains_of_rves_are_read_while_the_sample_is_loaded():
     """Half of the imposed strain up to 0.02, all of it beyond; another radius and the way back do not count."""
-    imposed = [0, -0.01, -0.02, -0.03, -0.04, -0.03]
+    imposed = [0, -0.01, -0.02, -0.03, -0.04, -0.02]
     rves = {"radius": [5] * 6 + [2], "imposed_zz": [*imposed, -1], "imposed_xz": [*imposed, -1],
             "strain_zz": [0, -0.005, -0.01, -0.02, -0.03, -0.03, 7], "strain_xz": [*imposed, 7]}
     rves = {name: collect.numpy.array(values) for name, values in rves.items()}
