@@ -21,14 +21,14 @@ std::string table_cell(std::string text) {
   return text;
 }
 
-std::string names_of(const CLI::Option& option) {
+std::string quoted_names(const CLI::Option& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_snames()) names.push_back("`-" + name + "`");
   for (const std::string& name : option.get_lnames()) names.push_back("`--" + name + "`");
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string row(const std::string& name, const CLI::Option& option) {
+std::string option_row(const std::string& name, const CLI::Option& option) {
   return fmt::format("| {} | {}{} |\n", name, table_cell(option.get_description()),
                      option.get_required() ? " (required)" : "");
 }
@@ -47,7 +47,7 @@ const char* presence_text(dem::Presence presence) {
 }
 
 template <class Row>
-std::string snapshot_table(const char* name, const std::vector<dem::Column<Row>>& columns) {
+std::string snapshot_columns(const char* name, const std::vector<dem::Column<Row>>& columns) {
   std::string out = fmt::format("\n### `{}`\n\n| column | unit | in a file | meaning |\n", name);
   out += "|---|---|---|---|\n";
   for (const auto& column : columns) {
@@ -58,7 +58,7 @@ std::string snapshot_table(const char* name, const std::vector<dem::Column<Row>>
   return out;
 }
 
-std::string import_table(const char* name, TableKind kind) {
+std::string import_columns(const char* name, TableKind kind) {
   std::string out = fmt::format("\n### Table of {}\n\n| column | unit | meaning |\n", name);
   out += "|---|---|---|\n";
   for (const OurColumn& column : our_columns(kind)) {
@@ -90,10 +90,10 @@ std::string commands_markdown(const CLI::App& app) {
     out += " [OPTIONS]`: " + table_cell(command->get_description()) + ".\n\n";
     out += "| argument or option | meaning |\n|---|---|\n";
     for (const CLI::Option* option : positional_options(*command)) {
-      out += row("`" + option->get_name(true) + "`", *option);
+      out += option_row("`" + option->get_name(true) + "`", *option);
     }
     for (const CLI::Option* option : dashed_options(*command)) {
-      out += row(names_of(*option) + (is_flag(*option) ? "" : " value"), *option);
+      out += option_row(quoted_names(*option) + (is_flag(*option) ? "" : " value"), *option);
     }
   }
   return out;
@@ -105,15 +105,15 @@ std::string columns_markdown() {
       "(`DIR/pages/columns.md`) from the declarations in `dem/snapshot/columns.cc` and "
       "`coupling/import/our_columns.cc`.\n\n## Columns of a snapshot\n\nThe group of a snapshot "
       "([file formats](file-formats.md#snapshots-snapshotsh5)) has these columns.\n";
-  out += snapshot_table("grains", dem::grain_columns(3));
-  out += snapshot_table("contacts", dem::contact_columns());
-  out += snapshot_table("walls", dem::wall_columns());
+  out += snapshot_columns("grains", dem::grain_columns(3));
+  out += snapshot_columns("contacts", dem::contact_columns());
+  out += snapshot_columns("walls", dem::wall_columns());
   out +=
       "\n## Columns that import reads\n\nThe command [import](import-formats.md#columns) knows "
       "these names; `--column OURS=THEIRS` gives others.\n";
-  out += import_table("grains", TableKind::grains);
-  out += import_table("contacts", TableKind::contacts);
-  out += import_table("walls", TableKind::walls);
+  out += import_columns("grains", TableKind::grains);
+  out += import_columns("contacts", TableKind::contacts);
+  out += import_columns("walls", TableKind::walls);
   return out;
 }
 
