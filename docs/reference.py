@@ -66,13 +66,13 @@ def gallery() -> str:
 
 
 def rows(page: str) -> list[tuple[str, str]]:
-    """First cells of a page's tables and the anchors of their sections."""
+    """Names in the first cells of a page's tables, and the anchors of their sections."""
     section, out = "", []
     for line in (DOCS / page).read_text().splitlines():
         if line.startswith("#"):
             section = anchor(line.lstrip("# "))
-        elif found := re.match(r"\| `([^`]+)`", line):
-            out.append((found[1], section))
+        elif line.startswith("| `"):
+            out += [(name, section) for name in re.findall(r"`([^`]+)`", line.split(" | ")[0])]
     return out
 
 
@@ -89,8 +89,8 @@ def terms() -> list[tuple[str, str, str]]:
     text = (DOCS / "commands.md").read_text()
     out += [(f"grainfield {name}", "command", f"commands.md#{name}") for name in re.findall(r"^## (\S+)$", text, re.M)]
     for name, section in rows("columns.md"):
-        out.append((name, "column of a snapshot" if "/" in name else section.replace("-", " ").replace("table", "column"),
-                    f"columns.md#{section}"))
+        kind = "column of a snapshot" if "/" in name else section.replace("-", " ").replace("table", "column")
+        out.append((name, kind, f"columns.md#{section}"))
     for heading in re.findall(r"^## (.+)$", (DOCS / "file-formats.md").read_text(), flags=re.M):
         for name in re.findall(r"`([^`]+)`", heading):
             out.append((name, "file", f"file-formats.md#{anchor(heading)}"))
