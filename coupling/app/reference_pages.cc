@@ -93,6 +93,7 @@ std::string commands_markdown(const CLI::App& app) {
       out += option_row("`" + option->get_name(true) + "`", *option);
     }
     for (const CLI::Option* option : dashed_options(*command)) {
+      if (option->get_group().empty()) continue;  // --help does not list it either
       out += option_row(quoted_names(*option) + (is_flag(*option) ? "" : " value"), *option);
     }
   }
