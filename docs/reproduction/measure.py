@@ -128,7 +128,8 @@ def width(places, values):
 def strain_of(file):
     """Peaks and widths of the vertical strain of a loaded layer, by the table of a field."""
     lines = [line for line in file.read_text().splitlines() if not line.startswith("#")]
-    rows = [{name: float(value or "nan") for name, value in row.items()} for row in csv.DictReader(lines)]
+    rows = [{name.partition(" (")[0]: float(value or "nan") for name, value in row.items()}
+            for row in csv.DictReader(lines)]
     bottom = min(row["y"] for row in rows)
     found = []
     for depth in DEPTHS:
