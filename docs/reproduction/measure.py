@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Measures on the states of finished runs what no summary has, and adds it to a stored summary.
 
-    docs/reproduction/measure.py KIND STUDY FILE --member MEMBER
+    docs/reproduction/measure.py KIND STUDY FILE ... --member MEMBER
 
 KEY.MEMBER in results/STUDY.json is the mean over the realizations of the file, KEY.standard_error.MEMBER
 its error, ensemble.realizations.MEMBER their number. The keys, by what is measured (ADDED):
@@ -16,8 +16,11 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
               deeper than SKIN of the height, over that nearer to the surface; forces.centre_over_beside is the STRONG
               quantile of the forces in the lower half of the height within CENTRE half bases of the axis over
               that within BESIDE
+    poured    of heaps poured under 5 m/s2 and, in a second file, under 20: gravity.poured_xx_ratio and
+              gravity.poured_yy_ratio, the mean of the second over that of the first, by the same sums
     strain    of a layer, by a field of `grainfield strain`: strain.peaks is the largest number of peaks of its
               vertical strain at the depths DEPTHS, strain.width_ratio the width at the last over that at the first
+    summary   of another run of the study: the keys of its summary.json that begin with those of --keys
 
 Needs h5py, numpy and scipy.
 """
@@ -38,7 +41,7 @@ sys.path.insert(0, str(HERE))
 from record import write_file  # noqa: E402
 
 ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.normals_near_30", "angles.order", "gravity.xx_ratio", "gravity.yy_ratio",
-         "gravity.top_over_bottom", "forces.middle_over_surface", "forces.centre_over_beside", "strain.peaks",
+         "gravity.top_over_bottom", "gravity.poured_xx_ratio", "gravity.poured_yy_ratio", "forces.middle_over_surface", "forces.centre_over_beside", "strain.peaks",
          "strain.width_ratio")
 NEAR = 5.0  # degrees
 BINS = 36
@@ -140,42 +143,66 @@ def strain_of(file):
     return {"strain.peaks": max(n for n, _ in found), "strain.width_ratio": found[-1][1] / found[0][1]}
 
 
-def summarized(figures, member):
-    """KEY.MEMBER, its standard error and the number of realizations of the figures of realizations."""
-    out = {f"ensemble.realizations.{member}": len(figures)}
-    for key in figures[0]:
-        values = numpy.array([one[key] for one in figures], dtype=float)
-        out[f"{key}.{member}"] = float(values.mean())
+def summarized(found):
+    """The mean, its standard error and the number of realizations of the figures of realizations."""
+    out = {"ensemble.realizations": len(found)}
+    for key in found[0]:
+        values = numpy.array([one[key] for one in found], dtype=float)
+        out[key] = float(values.mean())
         if len(values) > 1:
-            out[f"{key}.standard_error.{member}"] = float(values.std(ddof=1) / math.sqrt(len(values)))
+            out[f"{key}.standard_error"] = float(values.std(ddof=1) / math.sqrt(len(values)))
     return out
+
+
+def poured(low, high):
+    """The ratios of the stresses of heaps poured under two gravities, with the errors of independent ensembles."""
+    out = {}
+    for axis, name in ((0, "xx"), (1, "yy")):
+        (a, a_error), (b, b_error) = (
+            (values.mean(), values.std(ddof=1) / math.sqrt(len(values)))
+            for values in (numpy.array([one[axis] for one in sums]) for sums in (low, high)))
+        out[f"gravity.poured_{name}_ratio"] = float(b / a)
+        out[f"gravity.poured_{name}_ratio.standard_error"] = float(b / a * math.hypot(a_error / a, b_error / b))
+    return out | {"ensemble.realizations": min(len(low), len(high))}
+
+
+def of_summary(summary, beginnings):
+    """The keys of a summary that begin with one of these, and the number of realizations."""
+    return {key: value for key, value in summary.items() if key.startswith((*beginnings, "ensemble.realizations"))}
 
 
 def with_keys(text, added):
     """A summary, one key a line, with these in it; its other lines as they are."""
     lines = [line.rstrip(",") for line in text.splitlines()[1:-1]]
     lines = [line for line in lines if line.split('"')[1] not in added]
-    return "{\n" + ",\n".join([*lines, *(f"  {json.dumps(key)}: {value!r}" for key, value in added.items())]) + "\n}\n"
+    return "{\n" + ",\n".join([*lines, *(f"  {json.dumps(key)}: {json.dumps(value)}" for key, value in added.items())]) + "\n}\n"
 
 
-def measured(kind, file):
-    """The figures of every realization of a file."""
+def figures(kind, files, keys):
+    """What is added to the summary, without its member."""
+    if kind == "summary":
+        return of_summary(json.loads(files[0].read_text()), keys)
     if kind == "strain":
-        return [strain_of(file)]
-    of = {"angles": angles_of, "gravity": gravity_of, "forces": forces_of}[kind]
-    with h5py.File(file) as states:
-        return [of(states[name]) for name in sorted(states)]
+        return summarized([strain_of(files[0])])
+    found = []
+    for file in files:
+        of = {"angles": angles_of, "gravity": gravity_of, "forces": forces_of,
+              "poured": lambda run: stress_sums(run["pile"])}[kind]
+        with h5py.File(file) as states:
+            found.append([of(states[name]) for name in sorted(states)])
+    return poured(*found) if kind == "poured" else summarized(found[0])
 
 
 def main():
     options = argparse.ArgumentParser(description="Measures on states what no summary has.")
-    options.add_argument("kind", choices=("angles", "gravity", "forces", "strain"))
+    options.add_argument("kind", choices=("angles", "gravity", "forces", "poured", "strain", "summary"))
     options.add_argument("study", help="results/STUDY.json takes the keys")
-    options.add_argument("file", type=pathlib.Path)
+    options.add_argument("file", type=pathlib.Path, nargs="+")
     options.add_argument("--member", required=True, help="ends the keys")
+    options.add_argument("--keys", nargs="+", default=[], help="of a summary: the keys' beginnings")
     given = options.parse_args()
     stored = HERE / "results" / f"{given.study}.json"
-    added = summarized(measured(given.kind, given.file), given.member)
+    added = {f"{key}.{given.member}": value for key, value in figures(given.kind, given.file, given.keys).items()}
     write_file(stored, with_keys(stored.read_text(), added).encode())
     print(stored)
 
