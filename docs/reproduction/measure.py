@@ -50,10 +50,14 @@ DEPTHS = (0.25, 0.5, 0.75)
 
 
 def order(angles):
-    """1 less the entropy of a histogram of angles (degrees, modulo 180) over that of an even one."""
+    """1 less the entropy of a histogram of angles (degrees, modulo 180) over that of an even one.
+
+    The entropy of a sample is too small by (occupied bins - 1) / (2 N) (Miller), which is added.
+    """
     share = numpy.histogram(angles % 180, BINS, (0, 180))[0] / len(angles)
     share = share[share > 0]
-    return 1 + float(share @ numpy.log(share)) / math.log(BINS)
+    entropy = (len(share) - 1) / (2 * len(angles)) - float(share @ numpy.log(share))
+    return 1 - entropy / math.log(BINS)
 
 
 def near(angles, directions):

@@ -64,7 +64,8 @@ result" means not run or not measured; the row says which.
 - **The steeper flank** is the flank with the larger mean, on whichever side. The study's page says which side was
   meant.
 - **Nothing was tuned to agree**, with one exception: the window of Liffman's H at 32.6° was chosen after the piles
-  were seen. Its row says so. The value over the whole way to the bend is not stored.
+  were seen. Its row says so. The value over the whole way to the bend is not stored. What counts as theirs in Roul's
+  figures 3.8 and 5.13 and Liffman's 13 and 14 was written when our values were stored already.
 
 The script `docs/reproduction/page.py` makes this page. It reads the sources' figures from
 `docs/reproduction/figures/` and ours from `docs/reproduction/results/`: `CASE.json` is the `summary.json` of
