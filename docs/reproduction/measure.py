@@ -20,6 +20,9 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
               gravity.poured_yy_ratio, the mean of the second over that of the first, by the same sums
     strain    of a layer, by a field of `grainfield strain`: strain.peaks is the largest number of peaks of its
               vertical strain at the depths DEPTHS, strain.width_ratio the width at the last over that at the first
+    fields    of a heap, by the maps of fields.h5 (means over its piles): inside.bulk, inside.shear, inside.young,
+              inside.poisson and inside.fabric_trace are the mean over the points of a column of the map that lie
+              deeper than its middle over that of the others
     summary   of another run of the study: the keys of its summary.json that begin with those of --keys
 
 Needs h5py, numpy and scipy.
@@ -42,7 +45,7 @@ from record import write_file  # noqa: E402
 
 ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.normals_near_30", "angles.order", "gravity.xx_ratio", "gravity.yy_ratio",
          "gravity.top_over_bottom", "gravity.poured_xx_ratio", "gravity.poured_yy_ratio", "forces.middle_over_surface", "forces.centre_over_beside", "strain.peaks",
-         "strain.width_ratio")
+         "strain.width_ratio", *(f"inside.{name}" for name in ("bulk", "shear", "young", "poisson", "fabric_trace")))
 NEAR = 5.0  # degrees
 BINS = 36
 SKIN, CENTRE, BESIDE, STRONG = 0.2, 0.1, (0.15, 0.4), 0.95
@@ -147,6 +150,23 @@ def strain_of(file):
     return {"strain.peaks": max(n for n, _ in found), "strain.width_ratio": found[-1][1] / found[0][1]}
 
 
+def inside(points, values):
+    """Mean of the values in the lower half of every column of points over that in the upper one."""
+    known = numpy.isfinite(values)
+    (x, y), values = points[known].T, values[known]
+    column = numpy.round(x / (numpy.ptp(x) / 1000)).astype(int)
+    deep = numpy.array([at < (y[column == one].min() + y[column == one].max()) / 2 for at, one in zip(y, column)])
+    return float(values[deep].mean() / values[~deep].mean())
+
+
+def inside_of(fields):
+    """How the constants and the fabric of a heap change from the surface inwards."""
+    constants, fabric = fields["elastic_constants"], fields["fabric"]
+    out = {f"inside.{name}": inside(constants["points"][:], constants["value"][name][:])
+           for name in ("bulk", "shear", "young", "poisson")}
+    return out | {"inside.fabric_trace": inside(fabric["points"][:], fabric["value/fabric_trace"][:])}
+
+
 def summarized(found):
     """The mean, its standard error and the number of realizations of the figures of realizations."""
     out = {"ensemble.realizations": len(found)}
@@ -186,6 +206,9 @@ def figures(kind, files, keys):
     """What is added to the summary, without its member."""
     if kind == "summary":
         return of_summary(json.loads(files[0].read_text()), keys)
+    if kind == "fields":
+        with h5py.File(files[0]) as fields:
+            return inside_of(fields) | of_summary(json.loads(files[0].with_name("summary.json").read_text()), ())
     if kind == "strain":
         return summarized([strain_of(files[0])])
     found = []
@@ -199,7 +222,7 @@ def figures(kind, files, keys):
 
 def main():
     options = argparse.ArgumentParser(description="Measures on states what no summary has.")
-    options.add_argument("kind", choices=("angles", "gravity", "forces", "poured", "strain", "summary"))
+    options.add_argument("kind", choices=("angles", "gravity", "forces", "poured", "fields", "strain", "summary"))
     options.add_argument("study", help="results/STUDY.json takes the keys")
     options.add_argument("file", type=pathlib.Path, nargs="+")
     options.add_argument("--member", required=True, help="ends the keys")

@@ -448,6 +448,13 @@ def test_forces_inside_a_heap_by_hand():
     assert 3 < found["forces.middle_over_surface"] < 4
 
 
+def test_growth_inwards_by_hand():
+    """Columns of four and of two points, and one whose value is missing; a middle counts as the upper half."""
+    points = measure.numpy.array([(0, 0), (0, -1), (0, -2), (0, -3), (1, -2), (1, -3), (2, -3), (0, -4)], dtype=float)
+    values = measure.numpy.array([1, 1, 4, 4, 2, 6, NAN, NAN])
+    assert measure.inside(points, values) == pytest.approx((14 / 3) / (4 / 3))
+
+
 def test_peaks_and_widths_of_strains_by_hand(tmp_path):
     table = tmp_path / "field.csv"
     lines = {-1: [0, 0, 4, 0, 0], -2: [0, 3, 2, 3, 0], -3: [2, 2, 2.1, 2, 2], -4: [0, 0, 0, 0, 0]}
