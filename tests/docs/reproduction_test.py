@@ -11,6 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs/reproduction"))
 
 import collect  # noqa: E402
+import causes  # noqa: E402
 import measure  # noqa: E402
 import rve_scatter as scatter  # noqa: E402
 import page as maker  # noqa: E402
@@ -551,3 +552,12 @@ def test_strains_of_rves_are_read_while_the_sample_is_loaded():
     rves = {name: collect.numpy.array(values) for name, values in rves.items()}
     assert collect.strain_slopes(rves, "zz") == pytest.approx({"strain_slope.early": 0.5, "strain_slope.late": 1})
     assert collect.strain_slopes(rves, "xz") == pytest.approx({"strain_slope.early": 1, "strain_slope.late": 1})
+
+
+def test_the_table_of_causes_names_what_is_missing(tmp_path):
+    (tmp_path / "wellmann-box.json").write_text(json.dumps({
+        "strain_slope.late.hertz_05": 0.918, "strain_slope.late.standard_error.hertz_05": 0.003}))
+    (tmp_path / "wellmann-box-causes.json").write_text(json.dumps({"strain_slope.late.hertz_05_slow": 0.95}))
+    line = next(line for line in causes.table(Results(tmp_path)).splitlines() if line.startswith("| from 0.02"))
+    assert line == "| from 0.02 on, μ = 0.5 | about 1 | 0.918 ± 0.003 | not run | not run | not run | 0.950 |"
+    assert len({line.count("|") for line in causes.table(Results(tmp_path)).splitlines()}) == 1
