@@ -139,7 +139,7 @@ def _pair(row: Row, results: Results) -> tuple[Measured, Measured] | None:
     (of the row's member, if it has one)."""
     study = row["study"]
     if "over" in row:
-        a, b = (results.number(one, row["key"]) for one in (row["over"], study))
+        a, b = (results.number(one, row["key"], row.get("member", "")) for one in (row["over"], study))
     elif "key" in row:
         a, b = (results.number(study, row["key"], row[end]) for end in ("from", "to"))
     else:
