@@ -436,29 +436,30 @@ def test_stresses_and_displacements_of_a_changed_heap_by_hand():
 
 
 def test_forces_inside_a_heap_by_hand():
-    """1 near the surface of a triangle, 3 below it, 6 under the apex."""
+    """1 near the surface of a triangle, 3 below it, 1.5 under the apex."""
     places = [(x, y, 0) for y in range(20) for x in range(2 * y - 40, 41 - 2 * y)]
 
     def force(x, y):
-        return 6 if abs(x) < 4 and y < 9 else 1 if y > 15.5 - abs(x) / 2 else 3
+        return 1.5 if abs(x) < 4 and y < 9 else 1 if y > 15.5 - abs(x) / 2 else 3
 
     contacts = heap(places, [(k, -1, (0, 1, 0), (0, 0, 0)) for k in range(len(places))])["contacts"]
     contacts["normal_force"] = measure.numpy.array([force(x, y) for x, y, _ in places])
     found = measure.forces_of({"pile/contacts": contacts, "pile/grains/position": measure.numpy.array(places, dtype=float)})
-    assert found["forces.centre_over_beside"] == 2
-    assert 3 < found["forces.middle_over_surface"] < 4
+    assert found["forces.centre_over_beside"] == 0.5
+    assert 2 < found["forces.middle_over_surface"] < 3
 
 
 def test_growth_inwards_by_hand():
-    """Columns of four and of two points, and one whose value is missing; a middle counts as the upper half."""
-    points = measure.numpy.array([(0, 0), (0, -1), (0, -2), (0, -3), (1, -2), (1, -3), (2, -3), (0, -4)], dtype=float)
-    values = measure.numpy.array([1, 1, 4, 4, 2, 6, NAN, NAN])
-    assert measure.inside(points, values) == pytest.approx((14 / 3) / (4 / 3))
+    """Columns of four and of three points, and one whose value is missing; a middle counts as the upper half."""
+    points = measure.numpy.array([(0, 0), (0, -1), (0, -2), (0, -3), (1, -2), (1, -3), (1, -4), (2, -3), (0, -4)],
+                                 dtype=float)
+    values = measure.numpy.array([1, 1, 4, 4, 2, 3, 6, NAN, NAN])
+    assert measure.inside(points, values) == pytest.approx((14 / 3) / (7 / 4))
 
 
 def test_peaks_and_widths_of_strains_by_hand(tmp_path):
     table = tmp_path / "field.csv"
-    lines = {-1: [0, 0, 4, 0, 0], -2: [0, 3, 2, 3, 0], -3: [2, 2, 2.1, 2, 2], -4: [0, 0, 0, 0, 0]}
+    lines = {-1: [0, 0, 4, 0, 0], -2: [0, 3, 2, 2.9, 0], -3: [2, 2, 2.1, 2, 2], -4: [0, 0, 0, 0, 0]}
     table.write_text("# a field\nx,y,strain_yy\n" + "".join(
         f"{x},{y},{-value}\n" for y, values in lines.items() for x, value in zip(range(-2, 3), values)))
     assert measure.strain_of(table) == {"strain.peaks": 2, "strain.width_ratio": 4}
