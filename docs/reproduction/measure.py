@@ -8,7 +8,8 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
 
     angles    of the packing before it is loaded: angles.near_60 and angles.near_30 are the shares of the contact
               forces within NEAR of a multiple of 60 degrees, and of 30 degrees from the horizontal,
-              angles.normals_near_60 and angles.normals_near_30 those of the contacts' normals; angles.order is 1 less the entropy of their histogram (BINS over 180 degrees) over that of an even one
+              angles.normals_near_60 and angles.normals_near_30 those of the contacts' normals; angles.order is 1
+              less the entropy of the forces' histogram (BINS over 180 degrees) over that of an even one
     gravity   of a heap under changed gravity, by the sum over contacts of force times branch: gravity.xx_ratio and
               gravity.yy_ratio are sigma at 20 m/s2 over that at 5; gravity.top_over_bottom is the mean
               displacement in the upper third of the height over that in the lower one at half of gravity
@@ -43,8 +44,9 @@ sys.path.insert(0, str(HERE))
 
 from record import write_file  # noqa: E402
 
-ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.normals_near_30", "angles.order", "gravity.xx_ratio", "gravity.yy_ratio",
-         "gravity.top_over_bottom", "gravity.poured_xx_ratio", "gravity.poured_yy_ratio", "forces.middle_over_surface", "forces.centre_over_beside", "strain.peaks",
+ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.normals_near_30", "angles.order",
+         "gravity.xx_ratio", "gravity.yy_ratio", "gravity.top_over_bottom", "gravity.poured_xx_ratio",
+         "gravity.poured_yy_ratio", "forces.middle_over_surface", "forces.centre_over_beside", "strain.peaks",
          "strain.width_ratio", *(f"inside.{name}" for name in ("bulk", "shear", "young", "poisson", "fabric_trace")))
 NEAR = 5.0  # degrees
 BINS = 36
@@ -199,7 +201,8 @@ def with_keys(text, added):
     """A summary, one key a line, with these in it; its other lines as they are."""
     lines = [line.rstrip(",") for line in text.splitlines()[1:-1]]
     lines = [line for line in lines if line.split('"')[1] not in added]
-    return "{\n" + ",\n".join([*lines, *(f"  {json.dumps(key)}: {json.dumps(value)}" for key, value in added.items())]) + "\n}\n"
+    lines += [f"  {json.dumps(key)}: {json.dumps(value)}" for key, value in added.items()]
+    return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
 def figures(kind, files, keys):
