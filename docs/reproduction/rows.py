@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 import pathlib
+import re
 import tomllib
 from dataclasses import replace
 from typing import Any, Callable
@@ -38,6 +39,19 @@ def read_toml(name: str) -> dict[str, Any]:
 
 def all_rows() -> list[Row]:
     return [row for name in FILES for row in read_toml(name)["figure"]]
+
+
+def places(row: Row) -> list[tuple[str, str]]:
+    """What the row is of: its source with each figure, table, equation or section that it names."""
+    source, kind, numbers = re.fullmatch(r"(\w+) ((?:fig|eq|sect)\. |table |suggestion |)(.+)", row["source"]).groups()
+    return [(source, kind + number) for number in numbers.split(", ")]
+
+
+def unanswered(results: Results) -> list[str]:
+    """The sources' figures and tables with results (sources.toml) of which no row has one of ours."""
+    answered = {place for row in all_rows() if judged(row, results)[1] for place in places(row)}
+    return [f"{source} {figure}" for source, listed in read_toml("sources").items()
+            for figure in listed["results"] if (source, figure) not in answered and figure not in listed["sentences"]]
 
 
 # Numbers.
@@ -125,7 +139,7 @@ def _pair(row: Row, results: Results) -> tuple[Measured, Measured] | None:
     (of the row's member, if it has one)."""
     study = row["study"]
     if "over" in row:
-        a, b = (results.number(one, row["key"]) for one in (row["over"], study))
+        a, b = (results.number(one, row["key"], row.get("member", "")) for one in (row["over"], study))
     elif "key" in row:
         a, b = (results.number(study, row["key"], row[end]) for end in ("from", "to"))
     else:
@@ -257,6 +271,35 @@ def _static_friction(row: Row, results: Results) -> str | None:
             f"at {speed:.2g} sqrt(g d)")
 
 
+def _spread(row: Row, results: Results) -> str | None:
+    """Standard deviation of one realization beside the mean."""
+    found = results.number(row["study"], row["key"])
+    count = results.realizations(row["study"])
+    if found is None or count is None:
+        return None
+    share = found.error * math.sqrt(count) / abs(found.value)
+    return f"{'large' if share > 1 else 'small'}: a single one scatters by {share:.1f} of the mean"
+
+
+def _growth(row: Row, results: Results) -> str | None:
+    """Power of the depth with which the width grows, as load over largest response, between two depths."""
+    dot = f".{row['member']}" if "member" in row else ""
+    top, low = (results.plain(row["study"], f"response.depth_{depth}.peak{dot}") for depth in ("0.25", "0.75"))
+    if top is None or low is None:
+        return None
+    power = math.log(top / low) / math.log(3)
+    return f"{'linear' if 0.75 <= power <= 1.25 else 'not linear'}: as the depth to the {power:.2f}"
+
+
+def _nearer(row: Row, results: Results) -> str | None:
+    """Whether N is nearer to the line model than H, by the largest differences."""
+    n, h = (results.plain(row["study"], f"{row['key']}.line_{one}_max_difference.{row['member']}")
+            for one in ("normal", "horizontal"))
+    if n is None or h is None:
+        return None
+    return f"{'N is nearer' if n < h else 'N is not nearer'}: off by {100 * n:.2g} %, H by {100 * h:.2g} %"
+
+
 RULES: dict[str, Rule] = {
     "steeper flank": _flank(True),
     "flatter flank": _flank(False),
@@ -274,6 +317,9 @@ RULES: dict[str, Rule] = {
     "convergence": _convergence,
     "turning soft": _turning_soft,
     "static friction": _static_friction,
+    "spread": _spread,
+    "growth": _growth,
+    "nearer": _nearer,
 }
 
 
@@ -300,6 +346,9 @@ RULE_BANDS = {
     "convergence": "the difference falls by more than a fifth, or not",
     "turning soft": "all at rest, 90 % of them soft",
     "static friction": "no rest without it",
+    "spread": "above the mean",
+    "growth": "power of 0.75 to 1.25",
+    "nearer": "by the largest difference",
 }
 
 

@@ -1,0 +1,241 @@
+#!/usr/bin/python3
+"""Measures on the states of finished runs what no summary has, and adds it to a stored summary.
+
+    docs/reproduction/measure.py KIND STUDY FILE ... --member MEMBER
+
+KEY.MEMBER in results/STUDY.json is the mean over the realizations of the file, KEY.standard_error.MEMBER
+its error, ensemble.realizations.MEMBER their number. The keys, by what is measured (ADDED):
+
+    angles    of the packing before it is loaded: angles.near_60 and angles.near_30 are the shares of the contact
+              forces within NEAR of a multiple of 60 degrees, and of 30 degrees from the horizontal,
+              angles.normals_near_60 and angles.normals_near_30 those of the contacts' normals; angles.order is 1
+              less the entropy of the forces' histogram (BINS over 180 degrees) over that of an even one
+    gravity   of a heap under changed gravity, by the sum over contacts of force times branch: gravity.xx_ratio and
+              gravity.yy_ratio are sigma at 20 m/s2 over that at 5; gravity.top_over_bottom is the mean
+              displacement in the upper third of the height over that in the lower one at half of gravity
+    forces    of a heap: forces.middle_over_surface is the mean contact force inside the middle half of the base,
+              deeper than SKIN of the height, over that nearer to the surface; forces.centre_over_beside is the STRONG
+              quantile of the forces in the lower half of the height within CENTRE half bases of the axis over
+              that within BESIDE
+    poured    of heaps poured under 5 m/s2 and, in a second file, under 20: gravity.poured_xx_ratio and
+              gravity.poured_yy_ratio, the mean of the second over that of the first, by the same sums
+    strain    of a layer, by a field of `grainfield strain`: strain.peaks is the largest number of peaks of its
+              vertical strain at the depths DEPTHS, strain.width_ratio the width at the last over that at the first
+    fields    of a heap, by the maps of fields.h5 (means over its piles): inside.bulk, inside.shear, inside.young,
+              inside.poisson and inside.fabric_trace are the mean over the points of a column of the map that lie
+              deeper than its middle over that of the others
+    summary   of another run of the study: the keys of its summary.json that begin with those of --keys
+
+Needs h5py, numpy and scipy.
+"""
+import argparse
+import csv
+import json
+import math
+import pathlib
+import sys
+
+import h5py
+import numpy
+from scipy.signal import find_peaks
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+from record import write_file  # noqa: E402
+
+ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.normals_near_30", "angles.order",
+         "gravity.xx_ratio", "gravity.yy_ratio", "gravity.top_over_bottom", "gravity.poured_xx_ratio",
+         "gravity.poured_yy_ratio", "forces.middle_over_surface", "forces.centre_over_beside", "strain.peaks",
+         "strain.width_ratio", *(f"inside.{name}" for name in ("bulk", "shear", "young", "poisson", "fabric_trace")))
+NEAR = 5.0  # degrees
+BINS = 36
+SKIN, CENTRE, BESIDE, STRONG = 0.2, 0.1, (0.15, 0.4), 0.95
+DEPTHS = (0.25, 0.5, 0.75)
+
+
+def order(angles):
+    """1 less the entropy of a histogram of angles (degrees, modulo 180) over that of an even one.
+
+    The entropy of a sample is too small by (occupied bins - 1) / (2 N) (Miller), which is added.
+    """
+    share = numpy.histogram(angles % 180, BINS, (0, 180))[0] / len(angles)
+    share = share[share > 0]
+    entropy = (len(share) - 1) / (2 * len(angles)) - float(share @ numpy.log(share))
+    return 1 - entropy / math.log(BINS)
+
+
+def near(angles, directions):
+    """Share of angles within NEAR of one of the directions, all in degrees and modulo 180."""
+    away = abs((angles[:, None] - numpy.array(directions) + 90) % 180 - 90)
+    return float((away.min(axis=1) <= NEAR).mean())
+
+
+def angles_of(run):
+    """Figures of the directions of the forces between grains."""
+    state = run["unloaded"]["contacts"]
+    bears = (state["j"][:].astype(int) >= 0) & (numpy.linalg.norm(state["force"][:], axis=1) > 0)
+    angles, normals = (numpy.degrees(numpy.arctan2(state[name][:][bears, 1], state[name][:][bears, 0]))
+                       for name in ("force", "normal"))
+    return {"angles.near_60": near(angles, (0, 60, 120)), "angles.near_30": near(angles, (30, 150)),
+            "angles.normals_near_60": near(normals, (0, 60, 120)),
+            "angles.normals_near_30": near(normals, (30, 150)), "angles.order": order(angles)}
+
+
+def stress_sums(state):
+    """The sums over the contacts of a heap of f_x l_x and f_y l_y, l the branch."""
+    contacts, places = state["contacts"], state["grains/position"][:]
+    i, j = contacts["i"][:].astype(int), contacts["j"][:].astype(int)
+    other = numpy.where((j >= 0)[:, None], places[j], contacts["point"][:])  # a wall's j is negative
+    return (contacts["force"][:] * (places[i] - other)).sum(axis=0)
+
+
+def gravity_of(run):
+    """Stresses and displacements of a heap under changed gravity."""
+    low, high = stress_sums(run["gravity_5"]), stress_sums(run["gravity_20"])
+    before, after = (run[name]["grains/position"][:] for name in ("pile", "gravity_4.905"))
+    moved, height = numpy.linalg.norm(after - before, axis=1), before[:, 1] - before[:, 1].min()
+    third = height.max() / 3
+    return {"gravity.xx_ratio": high[0] / low[0], "gravity.yy_ratio": high[1] / low[1],
+            "gravity.top_over_bottom": moved[height > 2 * third].mean() / moved[height < third].mean()}
+
+
+def surface(places):
+    """The height of the surface above every grain: the highest grain of its column."""
+    column = ((places[:, 0] - places[:, 0].min()) / (numpy.ptp(places[:, 0]) / 60)).astype(int)
+    highest = numpy.full(column.max() + 1, -numpy.inf)
+    numpy.maximum.at(highest, column, places[:, 1])
+    return highest[column]
+
+
+def forces_of(run):
+    """Where in a heap the contact forces are large."""
+    contacts, places = run["pile/contacts"], run["pile/grains/position"][:]
+    i, force = contacts["i"][:].astype(int), contacts["normal_force"][:]
+    off = abs(places[:, 0] - places[:, 0].mean())
+    off = off[i] / (3 * off.mean())  # the mean of a triangle is a third of its half base
+    height = numpy.ptp(places[:, 1])
+    deep = (surface(places) - places[:, 1])[i] >= SKIN * height
+    low = (places[:, 1] - places[:, 1].min())[i] < height / 2
+    centre, beside = (numpy.quantile(force[low & part], STRONG)
+                      for part in (off < CENTRE, (off > BESIDE[0]) & (off < BESIDE[1])))
+    return {"forces.middle_over_surface": force[deep & (off < 0.5)].mean() / force[~deep].mean(),
+            "forces.centre_over_beside": centre / beside}
+
+
+def peaks(values):
+    """Number of maxima of at least half of the largest value that rise by a tenth of it."""
+    return len(find_peaks([0.0, *values, 0.0], height=values.max() / 2, prominence=values.max() / 10)[0])
+
+
+def width(places, values):
+    """Distance of the outermost crossings of half of the largest value, or of the ends that are above it."""
+    half, above = values.max() / 2, numpy.flatnonzero(values >= values.max() / 2)
+    first, last = above[0], above[-1]
+    left = numpy.interp(half, values[first - 1:first + 1], places[first - 1:first + 1]) if first > 0 else places[0]
+    right = numpy.interp(-half, -values[last:last + 2], places[last:last + 2])
+    return right - left
+
+
+def strain_of(file):
+    """Peaks and widths of the vertical strain of a loaded layer, by the table of a field."""
+    lines = [line for line in file.read_text().splitlines() if not line.startswith("#")]
+    rows = [{name.partition(" (")[0]: float(value or "nan") for name, value in row.items()}
+            for row in csv.DictReader(lines)]
+    bottom = min(row["y"] for row in rows)
+    found = []
+    for depth in DEPTHS:
+        height = min({row["y"] for row in rows}, key=lambda y: abs(y - depth * bottom))
+        line = sorted((row["x"], -row["strain_yy"]) for row in rows if row["y"] == height)
+        x, values = numpy.array([point for point in line if math.isfinite(point[1])]).T
+        found.append((peaks(values), width(x, values)))
+    return {"strain.peaks": max(n for n, _ in found), "strain.width_ratio": found[-1][1] / found[0][1]}
+
+
+def inside(points, values):
+    """Mean of the values in the lower half of every column of points over that in the upper one."""
+    known = numpy.isfinite(values)
+    (x, y), values = points[known].T, values[known]
+    column = numpy.round(x / (numpy.ptp(x) / 1000)).astype(int)
+    deep = numpy.array([at < (y[column == one].min() + y[column == one].max()) / 2 for at, one in zip(y, column)])
+    return float(values[deep].mean() / values[~deep].mean())
+
+
+def inside_of(fields):
+    """How the constants and the fabric of a heap change from the surface inwards."""
+    constants, fabric = fields["elastic_constants"], fields["fabric"]
+    out = {f"inside.{name}": inside(constants["points"][:], constants["value"][name][:])
+           for name in ("bulk", "shear", "young", "poisson")}
+    return out | {"inside.fabric_trace": inside(fabric["points"][:], fabric["value/fabric_trace"][:])}
+
+
+def summarized(found):
+    """The mean, its standard error and the number of realizations of the figures of realizations."""
+    out = {"ensemble.realizations": len(found)}
+    for key in found[0]:
+        values = numpy.array([one[key] for one in found], dtype=float)
+        out[key] = float(values.mean())
+        if len(values) > 1:
+            out[f"{key}.standard_error"] = float(values.std(ddof=1) / math.sqrt(len(values)))
+    return out
+
+
+def poured(low, high):
+    """The ratios of the stresses of heaps poured under two gravities, with the errors of independent ensembles."""
+    out = {}
+    for axis, name in ((0, "xx"), (1, "yy")):
+        (a, a_error), (b, b_error) = (
+            (values.mean(), values.std(ddof=1) / math.sqrt(len(values)))
+            for values in (numpy.array([one[axis] for one in sums]) for sums in (low, high)))
+        out[f"gravity.poured_{name}_ratio"] = float(b / a)
+        out[f"gravity.poured_{name}_ratio.standard_error"] = float(b / a * math.hypot(a_error / a, b_error / b))
+    return out | {"ensemble.realizations": min(len(low), len(high))}
+
+
+def of_summary(summary, beginnings):
+    """The keys of a summary that begin with one of these, and the number of realizations."""
+    return {key: value for key, value in summary.items() if key.startswith((*beginnings, "ensemble.realizations"))}
+
+
+def with_keys(text, added):
+    """A summary, one key a line, with these in it; its other lines as they are."""
+    lines = [line.rstrip(",") for line in text.splitlines()[1:-1]]
+    lines = [line for line in lines if line.split('"')[1] not in added]
+    lines += [f"  {json.dumps(key)}: {json.dumps(value)}" for key, value in added.items()]
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def figures(kind, files, keys):
+    """What is added to the summary, without its member."""
+    if kind == "summary":
+        return of_summary(json.loads(files[0].read_text()), keys)
+    if kind == "fields":
+        with h5py.File(files[0]) as fields:
+            return inside_of(fields) | of_summary(json.loads(files[0].with_name("summary.json").read_text()), ())
+    if kind == "strain":
+        return summarized([strain_of(files[0])])
+    found = []
+    for file in files:
+        of = {"angles": angles_of, "gravity": gravity_of, "forces": forces_of,
+              "poured": lambda run: stress_sums(run["pile"])}[kind]
+        with h5py.File(file) as states:
+            found.append([of(states[name]) for name in sorted(states)])
+    return poured(*found) if kind == "poured" else summarized(found[0])
+
+
+def main():
+    options = argparse.ArgumentParser(description="Measures on states what no summary has.")
+    options.add_argument("kind", choices=("angles", "gravity", "forces", "poured", "fields", "strain", "summary"))
+    options.add_argument("study", help="results/STUDY.json takes the keys")
+    options.add_argument("file", type=pathlib.Path, nargs="+")
+    options.add_argument("--member", required=True, help="ends the keys")
+    options.add_argument("--keys", nargs="+", default=[], help="of a summary: the keys' beginnings")
+    given = options.parse_args()
+    stored = HERE / "results" / f"{given.study}.json"
+    added = {f"{key}.{given.member}": value for key, value in figures(given.kind, given.file, given.keys).items()}
+    write_file(stored, with_keys(stored.read_text(), added).encode())
+    print(stored)
+
+
+if __name__ == "__main__":
+    main()
