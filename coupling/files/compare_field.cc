@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #include "continuum/settings.h"
-#include "coupling/files/added_forces.h"
+#include "coupling/output/added_forces.h"
 #include "coupling/files/measured_share.h"
 #include "coupling/heap/heap_field.h"
 #include "coupling/judge/words.h"

@@ -11,7 +11,7 @@
 #include "continuum/model.h"
 #include "coupling/case/apply.h"
 #include "coupling/case/shipped_cases.h"
-#include "coupling/files/added_forces.h"
+#include "coupling/output/added_forces.h"
 #include "coupling/files/average_files.h"
 #include "coupling/files/measured_field.h"
 #include "coupling/files/measured_share.h"
