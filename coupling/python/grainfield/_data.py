@@ -9,7 +9,7 @@ from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from . import _core, _show
+from . import _arrays, _core, _show
 
 PLANE_STRESS = ("sigma_xx", "sigma_yy", "sigma_xy")
 SPACE_STRESS = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_yz", "sigma_xz", "sigma_xy")
@@ -248,15 +248,15 @@ class Field:
                 (
                     column,
                     (units or {}).get(column, "1"),
-                    np.asarray(values, float),
-                    None if column not in (errors or {}) else np.asarray(errors[column], float),
-                    None if column not in (samples or {}) else np.asarray(samples[column], float),
+                    _arrays.array(column, values),
+                    None if column not in (errors or {}) else _arrays.array(column, errors[column]),
+                    None if column not in (samples or {}) else _arrays.array(column, samples[column]),
                 )
                 for column, values in (columns or {}).items()
             ]
             known = {key: _attribute(value) for key, value in (attributes or {}).items()}
-            sizes = (list(shape) if shape else []) + [0, 0, 0]
-            self._core = _core.Field(np.asarray(points, float), given, sizes[:3], realizations, known)
+            sizes = ([int(n) for n in _arrays.floats("shape", shape)] if shape is not None else []) + [0, 0, 0]
+            self._core = _core.Field(_arrays.array("points", points), given, sizes[:3], realizations, known)
         self.name = name
         #: other fields of the same average: "base_response" of a response
         self.beside: dict[str, Field] = {}

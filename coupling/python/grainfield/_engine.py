@@ -10,7 +10,7 @@ from typing import Any, Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from . import _core
+from . import _core, _given
 from ._commands import _overrides
 from ._data import Contacts, Packing
 
@@ -92,7 +92,7 @@ class Engine:
             motion["time_step"] = float(time_step)
         keys = {f"material.{key}": value for key, value in (material or {}).items()}
         keys |= {f"motion.{key}": value for key, value in motion.items()}
-        self._core = _core.Engine(start._core, _overrides(keys), threads)
+        self._core = _core.Engine(_given.state("start", start), _overrides(keys), threads)
 
     @property
     def dim(self) -> int:

@@ -107,6 +107,8 @@ def write(
         value = {group: value}
     elif isinstance(value, Field):
         value = {value.name: value} | value.beside
+    elif not isinstance(value, Mapping):
+        raise TypeError(f"{text}: found a {type(value).__name__}, allowed: a packing, a field, or several by name")
     elif not value:
         raise ValueError(f"{text}: nothing to write")
     if all(isinstance(one, Packing) for one in value.values()):

@@ -119,7 +119,8 @@ class _Judged:
 
     def plot(self, ax: Any = None, profile: str | None = None) -> Any:
         """Draws a profile of the grains, or of what was measured, with a band of one standard error,
-        and the models beside; by default the first. Returns the axes."""
+        and the models; by default of the vertical stress at the lowest height. Returns the axes.
+        profiles["profile"] has the names of all."""
         from ._plots import plot_profiles
 
         return plot_profiles(self.profiles, ax, profile, self._of)
