@@ -66,6 +66,7 @@ class Contacts(_Rows):
     """
 
     _table = "contacts"
+    _shown = ("pairs", "points", "forces", "normal_forces", "tangential_forces", "friction", "sliding")
     _names = {
         "points": "point",
         "normals": "normal",
@@ -81,6 +82,9 @@ class Contacts(_Rows):
 
     def __len__(self) -> int:
         return self._core.counts()[1]
+
+    def _repr_html_(self) -> str:
+        return _show.table_of_packing(self)
 
     def __repr__(self) -> str:
         return f"<Contacts: {len(self)}, with {', '.join(self.units)}>"
@@ -105,6 +109,7 @@ class Walls(_Rows):
     """
 
     _table = "walls"
+    _shown = ("shapes", "points", "normals", "forces", "velocities", "friction")
     _names = {
         "points": "point",
         "normals": "normal",
@@ -121,6 +126,12 @@ class Walls(_Rows):
 
     def __len__(self) -> int:
         return self._core.counts()[2]
+
+    def __repr__(self) -> str:
+        return f"<Walls: {', '.join(self.names) or 'none'}>"
+
+    def _repr_html_(self) -> str:
+        return _show.table_of_packing(self)
 
     @property
     def names(self) -> list[str]:
@@ -352,7 +363,7 @@ class Field:
 
     def to_xarray(self) -> Any:
         """A Dataset: a grid's coordinates, or points; the columns, COLUMN_error, and COLUMN_samples with
-        the dimension realization. Units are in the attributes of each."""
+        the coordinate realization, 0, 1, ... Units are in the attributes of each."""
         return _show.field_dataset(self)
 
     def to_meshio(self) -> Any:
@@ -382,6 +393,13 @@ class Summary(dict):
     def under(self, start: str) -> dict[str, Any]:
         """Those whose name begins so, without that: summary.under("fit.osl.")."""
         return {key[len(start):]: value for key, value in self.items() if key.startswith(start)}
+
+    def to_pandas(self) -> Any:
+        """A DataFrame with the columns value and unit, a row for each key."""
+        return _show.summary_frame(self)
+
+    def _repr_html_(self) -> str:
+        return _show.summary(self)
 
 
 class Table(dict):

@@ -38,6 +38,12 @@ class Structure:
     def __init__(self, found: Mapping[str, Any]):
         self.__dict__.update(found)
 
+    def __repr__(self) -> str:
+        return f"<Structure: {self.grains_counted} grains, coordination {self.coordination:.3g}, {len(self.chains)} force chains>"
+
+    def _repr_html_(self) -> str:
+        return _show.structure(self)
+
 
 def _profiles(outcome: Any) -> Table:
     notes, profile, columns = outcome.profiles()
@@ -237,3 +243,6 @@ class Result:
 
     def __repr__(self) -> str:
         return f"<Result {self.folder}: {len(self.summary)} figures>"
+
+    def _repr_html_(self) -> str:
+        return _show.result(self)
