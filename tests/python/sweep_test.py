@@ -5,6 +5,7 @@ import os
 import signal
 import threading
 import time
+import types
 from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 
 import grainfield as gf
 from run_test import CASE
-from scene import error_of, program, same_summary
+from scene import ROOT, error_of, program, same_summary
 
 FRICTION = {"material.friction": [0.2, 0.5]}
 
@@ -49,6 +50,34 @@ def test_the_table_has_errors(swept):
     assert set(swept.table()) == {"material.friction"} | set(swept.figures) | {f"{key}_error" for key in swept.figures}
     assert "material.friction" in swept._repr_html_() and len(swept.to_pandas()) == 2
     assert error_of(lambda: swept.table("response.peek")).startswith("table: no member has the figure response.peek")
+
+
+class DynamicSystem:
+    """What GrainLearning's system of this name has for a callback: (samples, parameters) in, (samples, observables,
+    steps) out."""
+
+    def __init__(self, param_data):
+        self.param_data, self.sim_data = np.array(param_data), None
+
+    def set_sim_data(self, data):
+        self.sim_data = np.array(data)
+
+
+def test_the_page_hands_over_to_grainlearning(case, tmp_path, monkeypatch):
+    """The callback of docs/python.md, with another case and figure, as a BayesianCalibration calls it."""
+    page = (ROOT / "docs/python.md").read_text()
+    text = "def run_piles(" + page.partition("def run_piles(")[2].partition("```")[0]
+    for theirs, ours in (("pile-line-source", str(case)), ("repose.mean_deg", "response.peak"), ("realizations=4", "realizations=2")):
+        assert theirs in text
+        text = text.replace(theirs, ours)
+    monkeypatch.chdir(tmp_path)
+    names = {"gf": gf, "__name__": "page"}
+    exec(text, names)
+    calibration = types.SimpleNamespace(system=DynamicSystem([[0.5], [0.2]]), curr_iter=1)
+    names["run_piles"](calibration)
+    done = gf.Sweep("repose/1", {f"friction_{value}": {"material.friction": value} for value in (0.5, 0.2)})
+    assert calibration.system.sim_data.shape == (2, 1, 1)
+    np.testing.assert_array_equal(calibration.system.sim_data[:, 0, 0], done.table("response.peak")["response.peak"])
 
 
 def test_figures_are_drawn_with_errors(swept):
