@@ -29,7 +29,9 @@ PileFrame frame_of(const HeapReader& heaps, std::size_t k, PackingWarnings& warn
       throw std::invalid_argument(
           fmt::format("is 3D; fits of heaps need a 2D packing; {}", kCompareCones));
     }
-    if (heap.contacts.empty()) throw std::invalid_argument("has no contacts, so no stress");
+    if (heap.contacts.empty())
+      throw std::invalid_argument(
+          "has no contacts, so no stress; add them with their forces, or let the engine settle it");
     const dem::Vec3& g = heap.gravity;
     if (!(g.y() < 0 && std::fabs(g.x()) < kLevel * -g.y())) {
       throw std::invalid_argument(
