@@ -1,12 +1,17 @@
 """Sweeps: the program side by side, resumed, and a table with errors."""
 
+import importlib.util
 import json
 import os
+import shutil
 import signal
+import subprocess
+import sys
 import threading
 import time
 import types
 from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -50,6 +55,35 @@ def test_the_table_has_errors(swept):
     assert set(swept.table()) == {"material.friction"} | set(swept.figures) | {f"{key}_error" for key in swept.figures}
     assert "material.friction" in swept._repr_html_() and len(swept.to_pandas()) == 2
     assert error_of(lambda: swept.table("response.peek")).startswith("table: no member has the figure response.peek")
+
+
+MPI = """
+import sys
+import grainfield as gf
+from mpi4py.futures import MPIPoolExecutor
+
+if __name__ == "__main__":
+    with MPIPoolExecutor() as workers:
+        gf.sweep(sys.argv[1], {"material.friction": [0.2, 0.5]}, realizations=3, workers=workers, folder="s")
+"""
+
+
+def test_workers_of_dask_and_mpi4py(case, swept, tmp_path):
+    """The lines of docs/python.md, where these are installed."""
+    expected = swept.table("response.peak")["response.peak"]
+    mpiexec = shutil.which("mpiexec")
+    if mpiexec and importlib.util.find_spec("mpi4py"):
+        (tmp_path / "mpi.py").write_text(MPI)
+        allowed = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PYTHONPATH": str(Path(gf.__file__).parents[1])}
+        done = subprocess.run([mpiexec, "--oversubscribe", "-n", "3", sys.executable, "-m", "mpi4py.futures", "mpi.py", str(case)],
+                              cwd=tmp_path, env=os.environ | allowed, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        there = gf.Sweep(tmp_path / "s", swept.settings).table("response.peak")
+        np.testing.assert_array_equal(there["response.peak"], expected)
+    distributed = pytest.importorskip("dask.distributed")
+    with distributed.Client(n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None) as client:
+        other = gf.sweep(case, FRICTION, realizations=3, workers=client.get_executor(), folder=tmp_path / "d", progress=False)
+    np.testing.assert_array_equal(other.table("response.peak")["response.peak"], expected)
 
 
 class DynamicSystem:
