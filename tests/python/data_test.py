@@ -344,3 +344,9 @@ def test_periods_are_a_dict_or_pairs():
 def test_what_is_no_number_is_named():
     with pytest.raises(ValueError, match='found "nan", expected a finite number'):
         gf.packing([0, np.nan], [0, 0.1], 0.01, density=2500)
+
+
+def test_the_import_is_quick():
+    """CPU seconds with numpy, the least of three: 0.3 s are promised."""
+    code = "import time; start = time.process_time(); import grainfield; print(time.process_time() - start)"
+    assert min(float(python(code).stdout) for _ in range(3)) < 0.3
