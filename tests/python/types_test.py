@@ -38,7 +38,10 @@ def test_the_stub_has_every_function_of_the_core(tmp_path):
     assert code == 0, said
 
 
-def test_a_users_mistake_is_seen(tmp_path):
+def test_the_package_is_sound_and_a_users_mistake_is_seen(tmp_path):
+    (tmp_path / "mypy.ini").write_text("[mypy]\n[mypy-matplotlib.*,tqdm.*]\nignore_missing_imports = True\n")
+    code, said = mypy("mypy", "-p", "grainfield", folder=tmp_path)
+    assert code == 0, said
     (tmp_path / "good.py").write_text(SCRIPT)
     (tmp_path / "bad.py").write_text(SCRIPT.replace('grid=(5, 5)', 'widht=0.1').replace("verdict: str", "verdict: int"))
     code, said = mypy("mypy", "--follow-imports=silent", "good.py", folder=tmp_path)

@@ -263,9 +263,8 @@ def import_field(
     """
     nan = float("nan")
     left, right = slope if isinstance(slope, tuple) else (slope, slope)
-    core, _ = _core.import_field(
-        os.fspath(file), geometry, dim or 0, float(height),
-        *(nan if value is None else float(value) for value in (left, right, rho_g, load)), float(width))
+    left, right, weight, force = (nan if value is None else float(value) for value in (left, right, rho_g, load))
+    core, _ = _core.import_field(os.fspath(file), geometry, dim or 0, float(height), left, right, weight, force, float(width))
     name = _core.name_of_measured(core)
     for line in _core.measured_doubts(core):
         _warnings.warn(f"{name}: {line}", stacklevel=2)

@@ -255,13 +255,14 @@ class Field:
         if isinstance(points, _core.Field):
             self._core = points
         else:
-            given = [
+            units, errors, samples = units or {}, errors or {}, samples or {}
+            given: list[tuple[Any, ...]] = [
                 (
                     column,
-                    (units or {}).get(column, "1"),
+                    units.get(column, "1"),
                     _arrays.array(column, values),
-                    None if column not in (errors or {}) else _arrays.array(column, errors[column]),
-                    None if column not in (samples or {}) else _arrays.array(column, samples[column]),
+                    _arrays.array(column, errors[column]) if column in errors else None,
+                    _arrays.array(column, samples[column]) if column in samples else None,
                 )
                 for column, values in (columns or {}).items()
             ]

@@ -56,7 +56,7 @@ def import_packing(
     .report of what is returned holds what the command prints; its warnings are Python warnings. gf.write
     keeps the packings. Raises ValueError with the command's line.
     """
-    words: list[Any] = ["import", "--from", format, *map(os.fspath, files)]
+    words: list[Any] = ["import", "--from", format, *(os.fspath(file) for file in files)]
 
     def option(name: str, value: Any) -> None:
         if value is not None and value != "":
@@ -142,8 +142,9 @@ def export(
 
 def _entries(folder: str | os.PathLike) -> dict[str, tuple[int, int]]:
     """What tells whether a file was written anew, of every file of a folder."""
-    if not os.path.isdir(folder):
+    place = os.fspath(folder)
+    if not os.path.isdir(place):
         return {}
     return {entry.path: (entry.inode(), entry.stat().st_mtime_ns)
-            for entry in sorted(os.scandir(folder), key=lambda one: one.name)
+            for entry in sorted(os.scandir(place), key=lambda one: one.name)
             if entry.is_file() and not entry.name.startswith(".")}

@@ -58,7 +58,7 @@ def grid(value: Any) -> str:
     allowed = "allowed: how many columns and rows, such as (41, 21), in space (21, 21, 11)"
     if not isinstance(value, (list, tuple, np.ndarray)):
         raise TypeError(f"grid: found {found(value)}, {allowed}")
-    if len(value) not in (2, 3) or not all(isinstance(n, _numbers.Integral) and n > 1 for n in value):
+    if len(value) not in (2, 3) or not all(isinstance(n, _numbers.Integral) and int(n) > 1 for n in value):
         raise ValueError(f"grid: found {found(value)}, {allowed}; whole numbers, 2 or more")
     return "x".join(str(n) for n in value)
 

@@ -63,7 +63,7 @@ def _periods(periodic: Mapping[str, tuple[float, float]] | Sequence[tuple[str, A
     """"x=0.0:0.1" of {"x": (0, 0.1)}, or of [("x", (0, 0.1))]."""
     out = []
     try:
-        axes = {} if periodic is None else dict(periodic)
+        axes: dict[str, Any] = {} if periodic is None else dict(periodic)
     except (TypeError, ValueError):
         raise ValueError(f"periodic: found {periodic!r}, allowed: (low, high) of each axis in m, such as "
                          '{"x": (0, 0.1)}') from None

@@ -24,7 +24,7 @@ def axes_of(ax: Any) -> Any:
 def _change(packing: Packing, before: Packing) -> np.ndarray:
     """Normal forces less those of the same contacts in the state before, N."""
     contacts = before.contacts
-    then = {(i, j): force for (i, j), force in zip(map(tuple, contacts.pairs), contacts.normal_forces)}
+    then = dict(zip(map(tuple, contacts.pairs), contacts.normal_forces))
     return np.array([
         force - then.get(pair, 0.0)
         for pair, force in zip(map(tuple, packing.contacts.pairs), packing.contacts.normal_forces)

@@ -182,7 +182,7 @@ def field_dataset(of: Any) -> Any:
     if of.shape is None:
         dims: tuple[str, ...] = ("point",)
         shape: tuple[int, ...] = (len(of),)
-        coords = {axis: (dims, of.points[:, k], {"units": unit}) for k, axis in enumerate(axes)}
+        coords: dict[str, Any] = {axis: (dims, of.points[:, k], {"units": unit}) for k, axis in enumerate(axes)}
     else:  # x fastest
         dims, shape = axes[::-1], of.shape[::-1]
         grids = [of.points[:, k].reshape(shape) for k in range(len(axes))]
