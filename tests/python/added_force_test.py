@@ -264,7 +264,12 @@ def test_averages_and_fits_say_so(tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         fit = gf.fit([pile.packing(), heap(2)], ["osl"], heights=[0.2])
+        compared = gf.compare(gf.average([pile.packing(), heap(2)], frame="heap", cuts=[0.2]), "bcc", folder=tmp_path / "c")
     assert any("forces of a Python function" in line and "nothing" in line for line in fit.warnings)
+    for result in (fit, compared):
+        assert any("forces of a Python function act on these grains: nothing" in note for note in result.profiles.notes)
+    for file in ("profiles.csv", "profiles.md", "profiles.tex", "report.html", "summary.json", "verdict.json", "verdict.md"):
+        assert "nothing" in (tmp_path / "c" / file).read_text(), file
 
 
 @pytest.mark.parametrize("to, ending", [("csv", "-grains.csv"), ("csv", "-contacts.csv"), ("csv", "-walls.csv"),
