@@ -16,9 +16,11 @@
 #include "coupling/case/study.h"
 #include "coupling/export/exporters.h"
 #include "coupling/export/lammps_deck.h"
+#include "coupling/output/added_forces.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/output_folder.h"
+#include "dem/snapshot/added_forces_mark.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -141,9 +143,10 @@ int export_file(const ExportRequest& given) {
   std::vector<std::string> done, skipped;
   for (const std::string& name : names) {
     const std::string title = std::filesystem::path(file).filename().string() + ", " + name;
-    const ExportTarget target{folder, stem_of(name), title, given.column};
+    ExportTarget target{folder, stem_of(name), title, given.column, ""};
     if (packings.empty()) {
       const Field field = read_field(file, name);
+      target.note = added_forces_note(field);
       try {
         exporter.field(field, target);
       } catch (const std::invalid_argument& e) {
@@ -152,7 +155,9 @@ int export_file(const ExportRequest& given) {
         continue;
       }
     } else {
-      exporter.packing(dem::read_snapshot(file, name), target);
+      const dem::Snapshot packing = dem::read_snapshot(file, name);
+      target.note = dem::added_forces_note(packing.attributes);
+      exporter.packing(packing, target);
     }
     done.push_back(name);
   }

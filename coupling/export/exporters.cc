@@ -15,6 +15,7 @@
 #include "coupling/output/field_csv.h"
 #include "coupling/output/vtu.h"
 #include "coupling/report/drawing.h"
+#include "coupling/report/style.h"
 #include "coupling/structure/force_chains.h"
 
 namespace grainfield::coupling {
@@ -50,10 +51,22 @@ void field_as_csv(const Field& field, const ExportTarget& to) {
 }
 
 void packing_as_html(const dem::Snapshot& packing, const ExportTarget& to) {
-  write_text_file(file_of(to, ".html"), packing_page(packing, to.title));
+  const std::string title = to.note.empty() ? to.title : to.title + "; " + to.note;
+  write_text_file(file_of(to, ".html"), packing_page(packing, title));
 }
 
-void write_picture(const Picture& picture, bool bitmap, const ExportTarget& to) {
+// The note in the lower right corner; the label's number is above those of the pictures.
+void add_note(Picture& picture, const std::string& note) {
+  if (note.empty()) return;
+  picture.program = fmt::format(
+                        "set label 1000 {} at screen 1, screen 0 right offset -1,0.6 noenhanced "
+                        "font ',9' tc rgb '#a00000'\n",
+                        style::quoted(note)) +
+                    picture.program;
+}
+
+void write_picture(Picture picture, bool bitmap, const ExportTarget& to) {
+  add_note(picture, to.note);
   const auto gnuplot = find_gnuplot();
   if (!gnuplot) throw std::invalid_argument("gnuplot not found: install gnuplot-nox");
   const Drawing drawing = draw_picture(*gnuplot, picture, bitmap);

@@ -14,8 +14,9 @@ namespace grainfield::coupling {
 struct ExportTarget {
   const OutputFolder& folder;
   std::string stem;    ///< "packing", "realization_000-loaded"
-  std::string title;   ///< of pages and pictures
+  std::string title;   ///< of pages
   std::string column;  ///< of a field's picture: "sigma_yy"
+  std::string note;    ///< on pages and pictures: forces of a Python function; empty: none
 };
 
 struct Exporter {

@@ -5,6 +5,8 @@
 #include <iterator>
 #include <vector>
 
+#include "coupling/output/added_forces.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -68,14 +70,15 @@ std::string field_vtu(const Field& field) {
   return fmt::format(
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-      "<UnstructuredGrid><Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n"
+      "<UnstructuredGrid>{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n"
       "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n"
       "{}</DataArray></Points>\n"
       "<Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">{}</DataArray>\n"
       "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">{}</DataArray>\n"
       "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">{}</DataArray></Cells>\n"
       "<PointData>\n{}</PointData>\n</Piece></UnstructuredGrid></VTKFile>\n",
-      field.points.rows(), cells.corners.size(), points, connectivity, offsets, types, data);
+      added_forces_in_vtk(field), field.points.rows(), cells.corners.size(), points, connectivity,
+      offsets, types, data);
 }
 
 }  // namespace grainfield::coupling

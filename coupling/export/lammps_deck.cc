@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "coupling/export/lammps_ids.h"
+#include "dem/snapshot/added_forces_mark.h"
 #include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
@@ -105,8 +106,10 @@ double volume_of(const dem::Snapshot& s, const dem::Grain& g) {
 
 std::string data_of(const dem::Snapshot& s, const LammpsIds& ids) {
   const Box box = box_of(s);
-  std::string out = fmt::format("Packing of {}, SI units\n\n{} atoms\n2 atom types\n\n",
-                                s.dim == 2 ? "disks" : "spheres", s.grains.size());
+  const std::string mark = dem::added_forces_note(s.attributes);
+  std::string out = fmt::format("Packing of {}, SI units{}{}\n\n{} atoms\n2 atom types\n\n",
+                                s.dim == 2 ? "disks" : "spheres", mark.empty() ? "" : "; ", mark,
+                                s.grains.size());
   for (int a = 0; a < 3; ++a) {
     out += fmt::format("{:.17g} {:.17g} {}lo {}hi\n", box.low[a], box.high[a], kAxes[a], kAxes[a]);
   }
@@ -281,6 +284,10 @@ std::string input_of(const dem::Snapshot& s, const LammpsSetup& setup, const Lam
   std::string out = fmt::format(
       "# lmp -in in.lammps{0}, or mpirun -n 8 lmp -in in.lammps{0}. Back:\n# {1} -o lammps.h5\n",
       variables, import_command(s, "unloaded", deck));
+  if (const std::string mark = dem::added_forces_note(s.attributes); !mark.empty()) {
+    out += fmt::format("# {}; LAMMPS goes on without them.\n", mark);
+    deck.notes.push_back(mark + "; LAMMPS goes on without them");
+  }
   if (!setup.known) {
     deck.notes.push_back(
         "the packing does not tell its law: in.lammps takes it and the time step from the command "

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "coupling/output/added_forces.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -111,7 +113,11 @@ std::string walls_table(const dem::Snapshot& s) {
 
 PackingTables packing_tables(const dem::Snapshot& packing) {
   require_columns(packing);
-  return {grains_table(packing), contacts_table(packing), walls_table(packing)};
+  const std::string mark = added_forces_comment(packing);
+  PackingTables out{mark + grains_table(packing), mark + contacts_table(packing),
+                    walls_table(packing)};
+  if (!out.walls.empty()) out.walls.insert(0, mark);
+  return out;
 }
 
 }  // namespace grainfield::coupling

@@ -12,13 +12,13 @@
 #include <stdexcept>
 
 #include "continuum/settings.h"
-#include "coupling/files/added_forces.h"
 #include "coupling/files/measured_share.h"
 #include "coupling/heap/heap_field.h"
 #include "coupling/judge/words.h"
 #include "coupling/models/parse_choices.h"
 #include "coupling/models/subject.h"
 #include "coupling/observe/seen_models.h"
+#include "coupling/output/added_forces.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/judgement.h"
 #include "coupling/output/output_folder.h"
@@ -260,6 +260,7 @@ CompareOutcome compare_field(const CompareRequest& request) {
   if (out.measured) out.carried = carried_lines(fields, comparison.judgement);
   if (const std::string note = added_forces_note(fields.front().second); !note.empty()) {
     comparison.judgement.doubts.push_back(as_sentence(note));
+    comparison.scale.note += "; " + note;
   }
   summary["version"] = version_and_commit();
   summary["ensemble.realizations"] = static_cast<std::int64_t>(observed.realizations);

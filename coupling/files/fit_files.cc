@@ -11,7 +11,6 @@
 #include "continuum/model.h"
 #include "coupling/case/apply.h"
 #include "coupling/case/shipped_cases.h"
-#include "coupling/files/added_forces.h"
 #include "coupling/files/average_files.h"
 #include "coupling/files/measured_field.h"
 #include "coupling/files/measured_share.h"
@@ -20,6 +19,7 @@
 #include "coupling/fit/heap_result.h"
 #include "coupling/models/parse_choices.h"
 #include "coupling/observe/setup.h"
+#include "coupling/output/added_forces.h"
 #include "coupling/output/atomic_file.h"
 #include "coupling/output/field_io.h"
 #include "coupling/output/judgement.h"
@@ -295,6 +295,7 @@ FitOutcome fit_files(const FitRequest& request) {
     data = observe_heap_field(value.get<FitSetup>(), field, out.packings.front());
     if (const std::string note = added_forces_note(field); !note.empty()) {
       data.warnings.push_back(fmt::format("{}: {}", out.packings.front(), note));
+      data.scale.note += "; " + note;
     }
     if (measured) {
       if (const auto share = carried_share(field)) out.carried = share_text(*share);

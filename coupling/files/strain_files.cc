@@ -8,6 +8,7 @@
 #include "coupling/averaging/layer.h"
 #include "coupling/averaging/upright.h"
 #include "coupling/files/placement.h"
+#include "coupling/output/added_forces.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -75,6 +76,9 @@ StrainOutcome strain_files(const StrainRequest& request) {
   out.field.attributes["width"] = options.width;
   out.field.attributes["h"] = placed.depth;
   out.field.attributes["frame"] = request.frame;
+  copy_added_forces(after,
+                    out.field.attributes);  // of the later state, which names former ones, too
+  copy_added_forces(before, out.field.attributes);
   return out;
 }
 

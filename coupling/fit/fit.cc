@@ -190,9 +190,10 @@ Fit fit(const FitData& data, const Weights& weights, const FitModel& model,
   out.model = predict(data, model, best, &outside);
   if (outside == data.values()) {
     throw std::invalid_argument(fmt::format(
-        "fit of {}: the best constants leave every point outside the model's domain, where it "
-        "counts as 0; the largest value to fit is {:.2g} (heaps: of rho g h; far below 1: other "
-        "units?)",
+        "fit of {0}: found no constants with which the model has a stress at any of the points "
+        "(slope too steep for it?); leave {0} out, or set constants, as {0}:NAME=VALUE. The "
+        "largest "
+        "value to fit is {1:.2g} (heaps: of rho g h; far below 1: other units?)",
         model.name, mean.cwiseAbs().maxCoeff()));
   }
   if (outside > 0) {

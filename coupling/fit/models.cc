@@ -124,13 +124,13 @@ std::vector<RegistryEntry> osl_entries(const HeapFacts& facts) {
   yield.values = [phi](const VectorXd& p) {
     return numbers({continuum::eta_at_yield(phi, p[0]), p[0]});
   };
-  RegistryEntry both{"osl",
-                     "oriented stress linearity, eta and mu fitted",
-                     "osl",
-                     {},
-                     {"eta", "mu"},
-                     {eta, mu},
-                     {numbers({0.6, 0.0}), numbers({0.75, -0.3}), numbers({0.95, -0.9})}};
+  RegistryEntry both{
+      "osl", "oriented stress linearity, eta and mu fitted", "osl", {}, {"eta", "mu"}, {eta, mu},
+      {}};
+  for (const auto& [start, beside] : {std::pair(0.6, 0.0), {0.75, -0.3}, {0.95, -0.9}}) {
+    const double most = (1 / std::tan(phi) - beside) / std::tan(phi);  // of the hyperbolic range
+    both.starts.push_back(numbers({start < most ? start : most / 2, beside}));
+  }
   yield.elements = both.elements = {{"fe_osl_wedge", told(facts)}};
   return {yield, both};
 }

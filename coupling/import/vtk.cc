@@ -14,6 +14,28 @@
 namespace grainfield::coupling {
 namespace {
 
+// Throws for what `export --to vtu` writes for the eye: outlines of grains, lines between centres
+// whose walls are numbers, bands of force chains.
+void refuse_pictures(const std::string& file, const VtkData& data) {
+  const auto has = [&](const char* name) {
+    const auto is_it = [&](const VtkArray& array) { return array.name == name; };
+    return std::any_of(data.of_cells.begin(), data.of_cells.end(), is_it) ||
+           std::any_of(data.of_points.begin(), data.of_points.end(), is_it);
+  };
+  const bool outlines = has("coordination") && has("radius") && data.vertices.empty();
+  const bool contacts = has("i") && has("j") && has("wall") && has("sliding");
+  const bool chains = has("chain") && has("relative_force");
+  if (!outlines && !contacts && !chains) return;
+  throw std::invalid_argument(fmt::format(
+      "{}: found {} as grainfield export writes them for ParaView, allowed: points with a radius "
+      "and lines with forces; FILE.h5 of the packing needs no import, and its tables, export --to "
+      "csv, can be imported",
+      file,
+      outlines   ? "outlines of grains"
+      : contacts ? "contacts"
+                 : "force chains"));
+}
+
 std::vector<ForeignTable> scan(const std::string& file, ColumnNames& names) {
   const std::string bytes = TextSource::all_bytes(file);
   const bool legacy = bytes.starts_with("# vtk");
@@ -25,6 +47,7 @@ std::vector<ForeignTable> scan(const std::string& file, ColumnNames& names) {
         "{}:1: found \"{}\", expected \"# vtk DataFile\" or \"<VTKFile\"", file, found));
   }
   const VtkData data = legacy ? read_legacy_vtk(file, bytes) : read_xml_vtk(file, bytes);
+  refuse_pictures(file, data);
   std::vector<ForeignTable> tables = vtk_tables(file, data, names);
   for (ForeignTable& table : tables) table.time = data.time;
   // The second line of a legacy file is a title.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 #include "coupling/averaging/average.h"
@@ -22,14 +23,18 @@ constexpr double kRange = 2;                   // of the Lucy kernel, widths
 constexpr double kLevel = 1e-6;                // of gravity: its part along the floor
 constexpr std::size_t kAddedForcesKind = 100;  // of warnings: behind those of a check
 
-PileFrame frame_of(const HeapReader& heaps, std::size_t k, PackingWarnings& warnings) {
+// `added`: the attributes of forces of a Python function, taken where there are none yet.
+PileFrame frame_of(const HeapReader& heaps, std::size_t k, PackingWarnings& warnings,
+                   std::map<std::string, std::string>& added) {
   const dem::Snapshot heap = heaps.read(k);  // its messages name the file
   try {
     if (heap.dim != 2) {
       throw std::invalid_argument(
           fmt::format("is 3D; fits of heaps need a 2D packing; {}", kCompareCones));
     }
-    if (heap.contacts.empty()) throw std::invalid_argument("has no contacts, so no stress");
+    if (heap.contacts.empty())
+      throw std::invalid_argument(
+          "has no contacts, so no stress; add them with their forces, or let the engine settle it");
     const dem::Vec3& g = heap.gravity;
     if (!(g.y() < 0 && std::fabs(g.x()) < kLevel * -g.y())) {
       throw std::invalid_argument(
@@ -42,6 +47,7 @@ PileFrame frame_of(const HeapReader& heaps, std::size_t k, PackingWarnings& warn
     }
     warnings.add(heaps.name(k), check);
     warnings.add(kAddedForcesKind, heaps.name(k), dem::added_forces_note(heap.attributes));
+    dem::copy_added_forces(heap.attributes, added);
     PileFrame frame = pile_frame(heap);
     if (!(frame.pressure() > 0)) {
       throw std::invalid_argument("has no weight: gravity, masses or heights are 0");
@@ -70,10 +76,11 @@ Observations observe_heaps(const FitSetup& setup, const HeapReader& all_heaps, i
   const HeapReader heaps = without(all_heaps, setup.leave_out);
   Observations out;
   PackingWarnings warnings;
+  std::map<std::string, std::string> added;
   double height = 0, diameter = 0, least = std::numeric_limits<double>::infinity();
   const auto count = static_cast<double>(heaps.count);
   for (std::size_t k = 0; k < heaps.count; ++k) {
-    out.frames.push_back(frame_of(heaps, k, warnings));
+    out.frames.push_back(frame_of(heaps, k, warnings, added));
     if (const std::string& flying = out.frames.back().in_flight; !flying.empty()) {
       out.warnings.push_back(fmt::format("{}: {}", heaps.name(k), flying));
     }
@@ -137,6 +144,7 @@ Observations observe_heaps(const FitSetup& setup, const HeapReader& all_heaps, i
     at.pressure.push_back(frame.pressure());
   }
   take_values(setup, field, at, heaps.name, out);
+  if (!added.empty()) out.scale.note += "; " + dem::added_forces_note(added);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "coupling/output/added_forces.h"
 #include "coupling/output/atomic_file.h"
 
 namespace grainfield::coupling {
@@ -47,7 +48,7 @@ bool has_error(const Field& field, const Column& column) {
 std::string field_csv(const Field& field) {
   // As import-field reads them: the unit in brackets behind the name.
   const std::string length = field.is_over_height() ? "h" : "m";
-  std::string out = origin_of(field);
+  std::string out = origin_of(field) + added_forces_comment(field);
   std::string names;
   for (const char axis : std::string(field.points.cols() == 3 ? "xyz"
                                      : field.is_of_rings()    ? "rz"

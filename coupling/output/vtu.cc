@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "coupling/output/added_forces.h"
 #include "coupling/output/atomic_file.h"
 #include "dem/snapshot/displacements.h"
 #include "dem/snapshot/images.h"
@@ -22,7 +23,8 @@ constexpr int vtk_vertex = 1, vtk_line = 3, vtk_strip = 6, vtk_polygon = 7, vtk_
 /// the same at every point of one: glyphs and tubes take them from there.
 class Grid {
  public:
-  explicit Grid(bool on_points = false) : on_points_(on_points) {}
+  explicit Grid(const dem::Snapshot& of, bool on_points = false)
+      : mark_(added_forces_in_vtk(of)), on_points_(on_points) {}
 
   void add_cell(const std::vector<dem::Vec3>& corners, int type) {
     for (const dem::Vec3& c : corners)
@@ -70,7 +72,7 @@ class Grid {
         fmt::format(
             "<?xml version=\"1.0\"?>\n"
             "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-            "<UnstructuredGrid><Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n"
+            "<UnstructuredGrid>{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n"
             "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n"
             "{}</DataArray></Points>\n"
             "<Cells><DataArray type=\"Int64\" Name=\"connectivity\" "
@@ -78,12 +80,12 @@ class Grid {
             "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">{}</DataArray>\n"
             "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">{}</DataArray></Cells>\n"
             "<{}>\n{}</{}>\n</Piece></UnstructuredGrid></VTKFile>\n",
-            count_, corners_.size(), points_, connectivity_, offsets_, types_, place, data_,
+            mark_, count_, corners_.size(), points_, connectivity_, offsets_, types_, place, data_,
             place));
   }
 
  private:
-  std::string points_, connectivity_, offsets_, types_, data_;
+  std::string mark_, points_, connectivity_, offsets_, types_, data_;
   std::size_t count_ = 0;
   std::vector<std::size_t> corners_;  // of each cell
   bool on_points_;
@@ -172,7 +174,7 @@ void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
   const bool spheres = snapshot.dim == 3;
   const bool surfaces =
       std::any_of(grains.begin(), grains.end(), [](const auto& g) { return !g.axes.isZero(0); });
-  Grid grid(spheres && !surfaces);
+  Grid grid(snapshot, spheres && !surfaces);
   for (const dem::Grain& g : grains) {
     if (surfaces)
       grid.add_cell(surface_strip(g), vtk_strip);
@@ -219,7 +221,7 @@ void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
 
 void write_contacts_vtu(const std::string& file, const dem::Snapshot& snapshot) {
   const std::vector<dem::Contact>& contacts = snapshot.contacts;
-  Grid grid;
+  Grid grid(snapshot);
   for (const dem::Contact& c : contacts)
     grid.add_cell({grain(snapshot, c.i).position, branch_end(snapshot, c)}, vtk_line);
   grid.add_integer("i", [&](std::size_t k) { return grain(snapshot, contacts[k].i).id; });
@@ -243,7 +245,7 @@ void write_chains_vtu(const std::string& file, const dem::Snapshot& snapshot,
   double largest = 0;
   for (const dem::Contact& c : snapshot.contacts) largest = std::max(largest, c.normal_force);
   const bool tubes = snapshot.dim == 3;
-  Grid grid(tubes);
+  Grid grid(snapshot, tubes);
   std::vector<double> force, width;
   std::vector<int> chain;
   for (std::size_t k = 0; k < chain_of.size(); ++k) {

@@ -4,6 +4,8 @@
 #include <sstream>
 #include <string>
 
+#include "coupling/output/added_forces.h"
+
 namespace grainfield::coupling {
 namespace {
 
@@ -49,6 +51,11 @@ std::string xdmf(const std::string& h5_name, const NamedFields& fields) {
     pugi::xml_node grid = all.append_child("Grid");
     put(grid, "Name", name);
     put(grid, "GridType", "Uniform");
+    for (const auto& [mark, forces] : added_forces_of(field)) {
+      pugi::xml_node information = grid.append_child("Information");
+      put(information, "Name", mark);
+      put(information, "Value", forces);
+    }
     pugi::xml_node topology = grid.append_child("Topology");
     if (structured) {
       put(topology, "TopologyType", space ? "3DSMesh" : "2DSMesh");

@@ -1,4 +1,4 @@
-"""The search of GrainLearning over the friction of a pile. We have not tested these lines."""
+"""The callback of a BayesianCalibration of GrainLearning that searches for the friction of a pile."""
 import grainfield as gf
 
 

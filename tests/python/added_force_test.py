@@ -1,5 +1,6 @@
 """Forces and contact laws that functions of Python add to the engine."""
 
+import html
 import os
 import signal
 import subprocess
@@ -231,6 +232,15 @@ def test_marked_and_not_resumed_without(tmp_path):
     assert without.packing().attributes["former_added_forces"] == "nothing, glue"
 
 
+def marked_state(names):
+    """A layer that forces of these names made."""
+    engine = gf.Engine(layer(5, 4), material=LINEAR)
+    for name in names.split(", "):
+        engine.add_contact_force(lambda t, contacts: 0.02 * contacts.normals, name=name)
+    engine.step(2000)
+    return engine.packing()
+
+
 def test_averages_and_fits_say_so(tmp_path):
     field_warnings = []
     engine = still(lambda t, grains: 0 * grains.positions)
@@ -254,7 +264,60 @@ def test_averages_and_fits_say_so(tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         fit = gf.fit([pile.packing(), heap(2)], ["osl"], heights=[0.2])
+        compared = gf.compare(gf.average([pile.packing(), heap(2)], frame="heap", cuts=[0.2]), "bcc", folder=tmp_path / "c")
     assert any("forces of a Python function" in line and "nothing" in line for line in fit.warnings)
+    for result in (fit, compared):
+        assert any("forces of a Python function act on these grains: nothing" in note for note in result.profiles.notes)
+    for file in ("profiles.csv", "profiles.md", "profiles.tex", "report.html", "summary.json", "verdict.json", "verdict.md"):
+        assert "nothing" in (tmp_path / "c" / file).read_text(), file
+
+
+@pytest.mark.parametrize("to, ending", [("csv", "-grains.csv"), ("csv", "-contacts.csv"), ("csv", "-walls.csv"),
+                                        ("vtu", "-grains.vtu"), ("vtu", "-contacts.vtu"), ("vtu", "-chains.vtu"),
+                                        ("svg", ".svg"), ("html", ".html"), ("lammps", ".data"), ("lammps", ".lammps")])
+def test_every_export_says_so(to, ending, tmp_path):
+    """Of a packing that such forces made, and of none else."""
+    state = marked_state("glue, a<b")
+    for packing, there in ((state, True), (layer(5, 4), False)):
+        paths = gf.export(packing, to, tmp_path / str(there))
+        text = html.unescape(open(next(path for path in paths if path.endswith(ending)), encoding="utf-8").read())
+        assert ("glue, a<b" in text) == there
+
+
+def test_every_export_of_a_field_says_so(tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        field = gf.average(marked_state("glue"), frame="packing", grid=(5, 5))
+        plain = gf.average(layer(5, 4), frame="packing", grid=(5, 5))
+    gf.write(tmp_path / "field.h5", field)
+    assert 'Name="added_forces" Value="glue"' in (tmp_path / "field.xdmf").read_text()
+    for to in ("csv", "vtu", "svg"):
+        (path,) = [path for path in gf.export(field, to, tmp_path / to) if path.endswith(to)]
+        assert "glue" in open(path).read()
+        (path,) = [path for path in gf.export(plain, to, tmp_path / f"plain-{to}") if path.endswith(to)]
+        assert "forces" not in open(path).read()
+
+
+def test_marked_files_are_read_by_others(tmp_path):
+    """The tables come back, and a reader of VTK sees the names."""
+    state = marked_state("glue")
+    tables = [path for path in gf.export(state, "csv", tmp_path) if path.endswith(".csv")]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # not at rest
+        back = gf.import_packing("csv", *tables)
+    np.testing.assert_array_equal(back.contacts.forces, state.contacts.forces)
+    assert back.walls.names == state.walls.names
+    meshio = pytest.importorskip("meshio")
+    (grains,) = [path for path in gf.export(state, "vtu", tmp_path) if path.endswith("grains.vtu")]
+    assert list(meshio.read(grains).field_data) == ["added_forces: glue"]
+
+
+def test_strains_say_so():
+    before = layer(5, 4)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        field = gf.strain(before, marked_state("glue"), frame="packing", grid=(4, 3))
+    assert field.attributes["added_forces"] == "glue"
 
 
 def test_ctrl_c_within_the_function_leaves_a_whole_step():

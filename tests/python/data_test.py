@@ -247,6 +247,23 @@ grainfield.write({str(tmp_path / 'q.h5')!r}, ours)
     np.testing.assert_array_equal(gf.read(tmp_path / "q.h5").radii, heap_arrays(1)["radius"])
 
 
+def test_files_hold_plain_types_that_others_open(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    field = gf.average([heap(1), heap(2)], frame="heap", grid=(5, 4))
+    gf.write(tmp_path / "f.h5", field)
+    gf.write(tmp_path / "p.h5", heap())
+    kinds = set()
+    for name in ("f.h5", "p.h5"):
+        with h5py.File(tmp_path / name) as file:
+            file.visititems(lambda _, item: kinds.update([item.dtype.str] if isinstance(item, h5py.Dataset) else []))
+    assert kinds == {"<f8", "<i8"}
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("h5netcdf")
+    with xarray.open_dataset(tmp_path / "f.h5", engine="h5netcdf", group="average/value", phony_dims="sort") as values:
+        np.testing.assert_array_equal(values["sigma_yy"], field.sigma_yy)
+        assert values["sigma_yy"].unit == "N/m"
+
+
 def test_ids_beyond_doubles_keep_their_last_digit():
     ids = np.array([2**53 + 1, 2**53 + 2])
     packing = gf.packing([0, 0.0199], [0.01, 0.01], 0.01, ids=ids, density=2500,
@@ -327,3 +344,9 @@ def test_periods_are_a_dict_or_pairs():
 def test_what_is_no_number_is_named():
     with pytest.raises(ValueError, match='found "nan", expected a finite number'):
         gf.packing([0, np.nan], [0, 0.1], 0.01, density=2500)
+
+
+def test_the_import_is_quick():
+    """CPU seconds with numpy, the least of three: 0.3 s are promised."""
+    code = "import time; start = time.process_time(); import grainfield; print(time.process_time() - start)"
+    assert min(float(python(code).stdout) for _ in range(3)) < 0.3

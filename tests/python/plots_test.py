@@ -39,9 +39,12 @@ def test_fields_and_profiles_show_bands_and_models():
     assert axes.get_ylabel() == "-sigma_yy (N/m)"
     lines = dict(zip(("grains", "osl", "ife"), axes.lines))
     assert np.nanmean(lines["grains"].get_ydata()) > 0 > np.nanmean(cut.sigma_yy)
-    axes = gf.fit(heaps, ["osl"], heights=[0.2]).plot()
-    assert axes.get_title() == "-sigma_xx at 0.2 h" and axes.get_ylabel() == "-sigma_xx (N/m)"
-    shear = gf.fit(heaps, ["osl"], heights=[0.2]).plot(profile="sigma_xy at 0.2 h")
+    fit = gf.fit(heaps, ["osl"], heights=[0.3, 0.2])
+    axes = fit.plot()  # what the floor bears, and the nearest to it
+    assert axes.get_title() == "-sigma_yy at 0.2 h" and axes.get_ylabel() == "-sigma_yy (N/m)"
+    across = fit.plot(profile="sigma_xx at 0.3 h")
+    assert across.get_title() == "-sigma_xx at 0.3 h" and across.get_ylabel() == "-sigma_xx (N/m)"
+    shear = fit.plot(profile="sigma_xy at 0.2 h")
     assert shear.get_title() == "sigma_xy at 0.2 h" and shear.get_ylabel() == "sigma_xy (N/m)"
     with pytest.raises(ValueError, match="profile: found top, allowed: "):
         gf.compare(cut, "ife").plot(profile="top")

@@ -30,12 +30,13 @@ def python(code: str) -> subprocess.CompletedProcess:
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
 
 
-def heap_arrays(seed: int, rows: int = 25, d: float = 0.01) -> dict:
+def heap_arrays(seed: int, rows: int = 25, d: float = 0.01, at_slope: float = SLOPE, eta: float = ETA,
+                mu: float = MU) -> dict:
     """A heap of disks on a triangular lattice whose contacts carry the stress of OSL but for
     noise: each has the force sigma n d/sqrt(3), sigma of its place and n along the bond."""
     rng = np.random.default_rng(seed)
-    stress = gf.model("osl", phi_deg=SLOPE, rho_g=RHO_G, eta=ETA, mu=MU)
-    lift, slope = d * np.sqrt(3) / 2, np.tan(np.radians(SLOPE))
+    stress = gf.model("osl", phi_deg=at_slope, rho_g=RHO_G, eta=eta, mu=mu)
+    lift, slope = d * np.sqrt(3) / 2, np.tan(np.radians(at_slope))
     height = d + (rows - 1) * lift
     at = {}
     for row in range(rows):
@@ -73,8 +74,9 @@ def heap_arrays(seed: int, rows: int = 25, d: float = 0.01) -> dict:
     }
 
 
-def heap(seed: int = 1, **options) -> gf.Packing:
-    a = heap_arrays(seed)
+def heap(seed: int = 1, stress: dict | None = None, **options) -> gf.Packing:
+    """stress: arguments of heap_arrays."""
+    a = heap_arrays(seed, **(stress or {}))
     feet = np.stack([a["x"][a["floor"]], np.zeros(len(a["floor"]))], axis=1)
     return gf.packing(
         a["x"], a["y"], a["radius"], mass=a["mass"], walls="floor:y=0", friction=0.5,

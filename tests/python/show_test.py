@@ -34,6 +34,44 @@ def test_packings_and_fields_show_what_they_hold():
     assert float(least) == pytest.approx(np.nanmin(field.sigma_yy), rel=1e-5) and float(largest) <= 0
 
 
+def test_contacts_and_walls_show_their_rows():
+    contacts = HEAPS[0].contacts
+    header, first, *_ = cells(contacts._repr_html_())
+    assert header[:4] == ["pairs_0", "pairs_1", "points_x (m)", "points_y (m)"] and len(cells(contacts._repr_html_())) == 14
+    assert f"{len(contacts)} rows" in contacts._repr_html_()
+    assert float(first[header.index("normal_forces (N)")]) == pytest.approx(contacts.normal_forces[0], rel=1e-5)
+    header, *walls = cells(HEAPS[0].walls._repr_html_())
+    assert [wall[0] for wall in walls] == ["floor"] and walls[0][header.index("normals_y")] == "1"
+    assert repr(HEAPS[0].walls) == "<Walls: floor>"
+    pytest.importorskip("pandas")
+    assert HEAPS[0].walls.to_pandas()["name"].tolist() == ["floor"]
+
+
+def test_summaries_and_structures_show_their_figures():
+    summary = gf.fit(HEAPS, ["osl"], heights=[0.2], set={"fit.bootstrap": 0}).summary
+    rows = {row[0]: row[1:] for row in cells(summary._repr_html_())[1:]}
+    assert list(rows) == list(summary) and rows["fit.slope_deg"] == [f"{summary['fit.slope_deg']:.6g}", "deg"]
+    pytest.importorskip("pandas")
+    frame = summary.to_pandas()
+    assert list(frame.index) == list(summary) and frame.loc["fit.slope_deg", "unit"] == "deg"
+    assert frame.loc["fit.osl.eta", "value"] == summary["fit.osl.eta"]
+    made = gf.structure(HEAPS[0])
+    shown = dict(cells(made._repr_html_()))
+    assert shown["rattlers"] == str(made.rattlers) and float(shown["coordination"]) == pytest.approx(made.coordination, rel=1e-5)
+    assert repr(made).startswith(f"<Structure: {made.grains_counted} grains, coordination ")
+
+
+def test_results_show_what_there_is_to_ask_for(tmp_path):
+    gf.write(tmp_path / "summary.json", {"verdict.sentence": "osl is <nearest>.", "dem.grains": 12})
+    gf.write(tmp_path / "fields.h5", gf.average(HEAPS, frame="heap", grid=(5, 4)))
+    (tmp_path / "profiles.csv").write_text("x_m\n1\n")
+    result = gf.Result(tmp_path, ["loose"])
+    shown = result._repr_html_()
+    assert dict(cells(shown)[1:]) == {".summary": "2 figures", ".tables": "profiles", ".fields": "average"}
+    words = list(ElementTree.fromstring(f"<p>{shown}</p>").itertext())
+    assert "osl is <nearest>." in words and "loose" in words
+
+
 def test_judgements_show_what_the_report_shows():
     result = gf.fit(HEAPS, ["osl", "bcc"], heights=[0.2], set={"fit.bootstrap": 0})
     shown = result._repr_html_()
@@ -81,14 +119,15 @@ def test_fields_become_frames_and_datasets(tmp_path):
     np.testing.assert_array_equal(grid["sigma_yy"], field.grid("sigma_yy"))
     np.testing.assert_array_equal(np.stack([a.ravel() for a in np.meshgrid(grid.x, grid.y)], axis=1), field.points)
     samples = grid["sigma_yy_samples"]
-    assert samples.dims == ("y", "x", "realization")
+    assert samples.dims == ("y", "x", "realization") and grid["realization"].values.tolist() == [0, 1]
+    np.testing.assert_array_equal(samples.sel(realization=1).values.ravel(), field.samples("sigma_yy")[:, 1])
     np.testing.assert_allclose(samples.mean("realization"), grid["sigma_yy"], rtol=1e-12)
     pytest.importorskip("scipy")
     grid.to_netcdf(tmp_path / "field.nc")
     with pytest.importorskip("xarray").open_dataset(tmp_path / "field.nc") as back:
         assert back.identical(grid)
     line = gf.average(HEAPS, frame="heap", cuts=[0.2]).to_xarray()
-    assert line["sigma_yy"].dims == ("point",) and set(line.coords) == {"x", "y"}
+    assert line["sigma_yy"].dims == ("point",) and set(line.coords) == {"x", "y", "realization"}
 
 
 def test_grids_in_space_keep_their_order():

@@ -1,18 +1,24 @@
 """Sweeps: the program side by side, resumed, and a table with errors."""
 
+import importlib.util
 import json
 import os
+import shutil
 import signal
+import subprocess
+import sys
 import threading
 import time
+import types
 from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import grainfield as gf
 from run_test import CASE
-from scene import error_of, program, same_summary
+from scene import ROOT, error_of, program, same_summary
 
 FRICTION = {"material.friction": [0.2, 0.5]}
 
@@ -49,6 +55,63 @@ def test_the_table_has_errors(swept):
     assert set(swept.table()) == {"material.friction"} | set(swept.figures) | {f"{key}_error" for key in swept.figures}
     assert "material.friction" in swept._repr_html_() and len(swept.to_pandas()) == 2
     assert error_of(lambda: swept.table("response.peek")).startswith("table: no member has the figure response.peek")
+
+
+MPI = """
+import sys
+import grainfield as gf
+from mpi4py.futures import MPIPoolExecutor
+
+if __name__ == "__main__":
+    with MPIPoolExecutor() as workers:
+        gf.sweep(sys.argv[1], {"material.friction": [0.2, 0.5]}, realizations=3, workers=workers, folder="s")
+"""
+
+
+def test_workers_of_dask_and_mpi4py(case, swept, tmp_path):
+    """The lines of docs/python.md, where these are installed."""
+    expected = swept.table("response.peak")["response.peak"]
+    mpiexec = shutil.which("mpiexec")
+    if mpiexec and importlib.util.find_spec("mpi4py"):
+        (tmp_path / "mpi.py").write_text(MPI)
+        allowed = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PYTHONPATH": str(Path(gf.__file__).parents[1])}
+        done = subprocess.run([mpiexec, "--oversubscribe", "-n", "3", sys.executable, "-m", "mpi4py.futures", "mpi.py", str(case)],
+                              cwd=tmp_path, env=os.environ | allowed, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        there = gf.Sweep(tmp_path / "s", swept.settings).table("response.peak")
+        np.testing.assert_array_equal(there["response.peak"], expected)
+    distributed = pytest.importorskip("dask.distributed")
+    with distributed.Client(n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None) as client:
+        other = gf.sweep(case, FRICTION, realizations=3, workers=client.get_executor(), folder=tmp_path / "d", progress=False)
+    np.testing.assert_array_equal(other.table("response.peak")["response.peak"], expected)
+
+
+class DynamicSystem:
+    """What GrainLearning's system of this name has for a callback: (samples, parameters) in, (samples, observables,
+    steps) out."""
+
+    def __init__(self, param_data):
+        self.param_data, self.sim_data = np.array(param_data), None
+
+    def set_sim_data(self, data):
+        self.sim_data = np.array(data)
+
+
+def test_the_page_hands_over_to_grainlearning(case, tmp_path, monkeypatch):
+    """The callback of docs/examples, with another case and figure, as a BayesianCalibration calls it."""
+    page = (ROOT / "docs/examples/grainlearning.py").read_text()
+    text = "def run_piles(" + page.partition("def run_piles(")[2]
+    for theirs, ours in (("pile-line-source", str(case)), ("repose.mean_deg", "response.peak"), ("realizations=4", "realizations=2")):
+        assert theirs in text
+        text = text.replace(theirs, ours)
+    monkeypatch.chdir(tmp_path)
+    names = {"gf": gf, "__name__": "page"}
+    exec(text, names)
+    calibration = types.SimpleNamespace(system=DynamicSystem([[0.5], [0.2]]), curr_iter=1)
+    names["run_piles"](calibration)
+    done = gf.Sweep("repose/1", {f"friction_{value}": {"material.friction": value} for value in (0.5, 0.2)})
+    assert calibration.system.sim_data.shape == (2, 1, 1)
+    np.testing.assert_array_equal(calibration.system.sim_data[:, 0, 0], done.table("response.peak")["response.peak"])
 
 
 def test_figures_are_drawn_with_errors(swept):

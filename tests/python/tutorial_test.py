@@ -1,13 +1,16 @@
 """The script of docs/python.md runs, and its numbers are those of the commands."""
 
+import inspect
 import json
 import runpy
 import sys
+import textwrap
+import warnings
 
 import numpy as np
 
 import grainfield as gf
-from scene import ETA, ROOT, import_dumps, program, same, same_summary, write_dumps
+from scene import ETA, ROOT, error_of, heap_arrays, import_dumps, program, same, same_summary, write_dumps
 
 SCRIPT = ROOT / "docs/examples/lammps_heaps.py"
 
@@ -48,3 +51,24 @@ def test_the_strip_footing_of_the_page(capsys):
     e, nu = made["young"], made["poisson"]
     wide = (1 + nu) * (1 - 2 * nu) / (1 - nu) * made["pressure"] * made["depth"] / e
     assert 0.5 * wide < made["settlement"] < wide
+
+
+def example_of(text):
+    """The indented lines of a help text."""
+    lines = text.splitlines()
+    return textwrap.dedent("\n".join(line for line in lines if line.startswith("    ")))
+
+
+def test_what_help_shows_runs(capsys):
+    a = heap_arrays(1)
+    names = {name: a[name] for name in ("x", "y", "radius", "i", "j", "forces", "points")}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # without contacts of the floor
+        exec(example_of(gf.__doc__), names)
+        assert "osl is nearest" in capsys.readouterr().out and names["fit"].profiles["profile"][0].startswith("sigma_xx")
+        told = inspect.getdoc(gf.Engine)
+        names |= {"packing": gf.packing(a["x"], a["y"], a["radius"], density=2500, walls="floor:y=0", friction=0.3)}
+        exec(example_of(told).replace("20000", "20").replace("> 1e-3", "> 1e9"), names)
+    assert repr(names["engine"]).startswith(f"<Engine: 2D, {len(a['x'])} grains, 20 steps of ")
+    assert error_of(lambda: gf.fit(names["packing"])) == (
+        "packing:0: has no contacts, so no stress; add them with their forces, or let the engine settle it")

@@ -1,14 +1,24 @@
 """grainfield from Python: grains in, fields out, and a verdict on the continuum models.
 
-Every function does what the command of the same name does, through the same code: numbers agree to
-the bit. A mistake in what is given is a ValueError (exit code 2 of the program), a computation that
-fails a RuntimeError (3), an output that cannot be written an OSError (74), each with the program's
-line. SI units; in 2D density is kg/m2, stiffness and stress N/m. Stress is tension positive.
+A heap of one's own, from arrays to pictures (help(gf.packing) has shapes and units):
 
     import grainfield as gf
-    state = gf.read("pile/snapshots.h5:realization_000/pile")
-    field = gf.average(state, frame="heap")
-    print(gf.compare(field, ["osl:eta=0.74,mu=-0.31"]).verdict)
+    heap = gf.packing(x, y, radius, density=2500, walls="floor:y=0", friction=0.3,
+                      contacts={"i": i, "j": j, "forces": forces, "points": points})
+    heap.plot()                                                # grains and forces
+    field = gf.average(heap, frame="heap", grid=(41, 13))      # or a list of heaps
+    field.plot()                                               # the vertical pressure
+    fit = gf.fit(heap, ["osl", "bcc"])
+    fit.plot(), print(fit.verdict)
+
+Without forces of contacts, help(gf.Engine) settles the grains. gf.import_packing reads files of LAMMPS,
+LIGGGHTS, YADE, MercuryDPM, VTK and CSV. gf.read(gf.samples()["heaps.h5"]) has heaps to try.
+
+Every function does what the command of the same name does, through the same code: numbers agree to
+the bit. A wrong value is a ValueError (exit code 2 of the program), an object of another kind a
+TypeError, a computation that fails a RuntimeError (3), an output that cannot be written an OSError
+(74), each with a line that says what is allowed. SI units; in 2D density is kg/m2, stiffness and
+stress N/m. Stress is tension positive.
 
 docs/python.md tells more.
 """

@@ -9,42 +9,13 @@ from typing import Any, Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 
-from . import _core
+from . import _core, _given
 from ._data import PLANE_STRESS, SPACE_STRESS, Field, Packing
 from ._model import Model
-from ._packing import whole
 from ._progress import Progress
 from ._results import CompareResult, FitResult, Result, Structure
 
 atexit.register(_core.finish_ranks)
-
-
-def _list(value: Any) -> list:
-    if value is None:
-        return []
-    return list(value) if isinstance(value, (list, tuple, np.ndarray)) else [value]
-
-
-def _core_of(value: Any) -> Any:
-    return value._core if isinstance(value, (Packing, Field)) else os.fspath(value)
-
-
-def _sources(value: Any) -> list:
-    """Packings and texts, of a collection its packings."""
-    if isinstance(value, Mapping):
-        return [_core_of(one) for one in value.values()]
-    return [_core_of(one) for one in _list(value)]
-
-
-def _grid(grid: Any) -> str:
-    return "" if grid is None else grid if isinstance(grid, str) else "x".join(str(n) for n in grid)
-
-
-def _points(points: Any) -> Any:
-    if points is None:
-        return None
-    points = np.asarray(whole("points", points), float)
-    return points.reshape(1, -1) if points.ndim == 1 else points
 
 
 def _warn(lines: Iterable[str]) -> None:
@@ -67,7 +38,7 @@ def _overrides(sets: Mapping[str, Any] | Sequence[str] | None) -> list[str]:
     """{"material.friction": 0.3} as ["material.friction=0.3"]."""
     if isinstance(sets, Mapping):
         return [f"{key}={_toml(value)}" for key, value in sets.items()]
-    return _list(sets)
+    return _given.a_list(sets)
 
 
 def average(
@@ -106,13 +77,13 @@ def average(
     warnings are also given as Python warnings; so are the gaps among points that are given, and where
     nothing but nan is left. Raises ValueError.
     """
-    sources, before = _sources(snapshots), _sources(unloaded)
-    out = _core.average(
-        sources=sources,
-        unloaded=before,
-        points=_points(points),
-        grid=_grid(grid),
-        cuts=[float(share) for share in cuts],
+    out = _given.call(
+        _core.average,
+        sources=_given.packings("snapshots", snapshots),
+        unloaded=_given.packings("unloaded", unloaded),
+        points=_given.points(points),
+        grid=_given.grid(grid),
+        cuts=_given.floats("cuts", cuts),
         frame=frame,
         up=up,
         method=method,
@@ -120,10 +91,10 @@ def average(
         width=width,
         free_surface=free_surface,
         least_grains=least_grains,
-        quantities=list(quantities),
+        quantities=_given.a_list(quantities),
         response=response,
         rings=rings,
-        axis=[float(place) for place in axis],
+        axis=_given.floats("axis", axis),
         end_at_walls=end_at_walls,
         threads=threads,
     )
@@ -164,11 +135,12 @@ def strain(
     before, after: packings or "FILE.h5:group". measure: cambou, cundall, liao, derivative or kernel.
     width: m; default three mean diameters. .gaps, .warnings: as of average(). Raises ValueError.
     """
-    core, lines = _core.strain(
-        before=_core_of(before),
-        after=_core_of(after),
-        points=_points(points),
-        grid=_grid(grid),
+    core, lines = _given.call(
+        _core.strain,
+        before=_given.packing("before", before),
+        after=_given.packing("after", after),
+        points=_given.points(points),
+        grid=_given.grid(grid),
         frame=frame,
         up=up,
         measure=measure,
@@ -185,14 +157,14 @@ def strain(
 
 def structure(snapshot: Any) -> Structure:
     """Contacts, base forces, force chains and orientation of a packing or "FILE.h5:group"."""
-    return Structure(_core.structure(_core_of(snapshot)))
+    return Structure(_core.structure(_given.packing("snapshot", snapshot)))
 
 
 class SetModel:
     """A continuum model with its parameters set; call it with points."""
 
     def __init__(self, name: str, settings: Mapping[str, Any]):
-        texts = {key: value if isinstance(value, str) else repr(float(value))
+        texts = {key: value if isinstance(value, str) else repr(_given.number(f"model {name}: {key}", value))
                  for key, value in settings.items()}
         self._core = _core.Model(name, texts)
         self.name = name
@@ -207,11 +179,11 @@ class SetModel:
     def __call__(self, points: Any) -> np.ndarray:
         """Stresses (k, 3), in space (k, 6), in N/m (Pa), at points (k, dim), m; nan outside the
         model. Raises RuntimeError when a solve fails."""
-        return self._core.stress(_points(points))
+        return self._core.stress(_given.points(points))
 
     def quantities(self, points: Any) -> dict[str, np.ndarray]:
         """What the model knows besides the stress, such as displacements; of most nothing."""
-        return self._core.quantities(_points(points))
+        return self._core.quantities(_given.points(points))
 
     @property
     def figures(self) -> dict[str, float]:
@@ -235,17 +207,33 @@ def models() -> dict[str, dict[str, Any]]:
     return {one.pop("name"): one for one in _core.models()}
 
 
+_MODELS = '"NAME", "NAME:p=v,...", (name, {p: v}), a model, or a list of these; gf.models() has the names'
+
+
+def _several(models: Any) -> list:
+    if isinstance(models, (str, SetModel, Model)):
+        return [models]
+    if not isinstance(models, Iterable):
+        raise TypeError(f"models: found {_given.found(models)}, allowed: {_MODELS}")
+    return list(models)
+
+
 def _choices(models: Any) -> list[str]:
     """Texts as of --model; of a mapping {label: "NAME:p=v" or (name, {p: v}) or SetModel or Model}."""
     if isinstance(models, Mapping):
         return [f"{label}={_choice(value)}" for label, value in models.items()]
-    return [_choice(value) for value in ([models] if isinstance(models, (str, SetModel, Model)) else models)]
+    return [_choice(value) for value in _several(models)]
 
 
 def _choice(value: Any) -> str:
     if isinstance(value, str):
         return value
-    name, settings = (value.name, getattr(value, "settings", {})) if isinstance(value, (SetModel, Model)) else value
+    if isinstance(value, (SetModel, Model)):
+        name, settings = value.name, getattr(value, "settings", {})
+    elif isinstance(value, tuple) and len(value) == 2 and isinstance(value[1], Mapping):
+        name, settings = value
+    else:
+        raise TypeError(f"models: found {_given.found(value)}, allowed: {_MODELS}")
     return name + (":" if settings else "") + ",".join(f"{k}={v}" for k, v in settings.items())
 
 
@@ -275,13 +263,21 @@ def import_field(
     """
     nan = float("nan")
     left, right = slope if isinstance(slope, tuple) else (slope, slope)
-    core, _ = _core.import_field(
-        os.fspath(file), geometry, dim or 0, float(height),
-        *(nan if value is None else float(value) for value in (left, right, rho_g, load)), float(width))
+    left, right, weight, force = (nan if value is None else float(value) for value in (left, right, rho_g, load))
+    core, _ = _core.import_field(os.fspath(file), geometry, dim or 0, float(height), left, right, weight, force, float(width))
     name = _core.name_of_measured(core)
     for line in _core.measured_doubts(core):
         _warnings.warn(f"{name}: {line}", stacklevel=2)
     return Field(core, name=name)
+
+
+def _field(value: Any) -> Field:
+    if isinstance(value, Packing):
+        raise TypeError("field: found a packing, allowed: a field; gf.average(packing, frame=...) makes one, gf.fit takes packings")
+    if not isinstance(value, Field):
+        raise TypeError(f'field: found {_given.found(value)}, allowed: a field, several by name, or "FIELD.h5"; gf.average '
+                        "makes one of packings, gf.Field of arrays, gf.import_field of a table")
+    return value
 
 
 def compare(
@@ -306,17 +302,20 @@ def compare(
     if isinstance(field, Field):
         field = {field.name: field} | field.beside
     if isinstance(field, Mapping):
-        held = [(name, one._core) for name, one in field.items()]
+        held = [(name, _field(one)._core) for name, one in field.items()]
         field = "field"
+    elif not isinstance(field, (str, os.PathLike)):
+        _field(field)
     place = None if folder is None else os.fspath(folder)
-    outcome = _core.compare(
+    outcome = _given.call(
+        _core.compare,
         file=os.fspath(field),
         held=held,
         models=_choices(models),
-        fields=_list(fields),
-        components=_list(components),
-        heights=[float(share) for share in heights],
-        origin=[float(coordinate) for coordinate in origin],
+        fields=_given.a_list(fields),
+        components=_given.a_list(components),
+        heights=_given.floats("heights", heights),
+        origin=_given.floats("origin", origin),
         folder=place or "",
     )
     _warn([outcome.lacks, *outcome.doubts])
@@ -345,24 +344,26 @@ def fit(
     """
     if isinstance(inputs, Mapping):
         inputs = list(inputs.values())
-    given = _list(inputs)
+    given = list(inputs) if isinstance(inputs, (list, tuple)) else [inputs]
     fields = [one._core for one in given if isinstance(one, Field)]
     packings = [one._core for one in given if isinstance(one, Packing)]
-    files = [os.fspath(one) for one in given if not isinstance(one, (Field, Packing))]
+    files = [_given.packing("inputs", one, ", a field, or a list of these") for one in given
+             if not isinstance(one, (Field, Packing))]
     if len(fields) > 1:
         raise ValueError("fit: a field is fitted alone; average all packings into one (frame=\"heap\")")
     place = None if folder is None else os.fspath(folder)
-    outcome = _core.fit(
+    outcome = _given.call(
+        _core.fit,
         files=files,
         packings=packings,
         field=fields[0] if fields else None,
-        models=[_free_choice(one) for one in _list(models)],
-        heights=[float(share) for share in heights],
-        components=_list(components),
+        models=[] if models is None else [_free_choice(one) for one in _several(models)],
+        heights=_given.floats("heights", heights),
+        components=_given.a_list(components),
         width_diameters=width_diameters,
         case=case,
         sets=_overrides(set),
-        coverage=_list(coverage),
+        coverage=_given.a_list(coverage),
         draws=draws,
         folder=place or "",
         threads=threads,
@@ -402,7 +403,8 @@ def run(
     if progress is True:
         show = lambda now: line.show(now["text"], now["fraction"])  # noqa: E731
     try:
-        found = _core.run(
+        found = _given.call(
+            _core.run,
             case=os.fspath(case),
             folder="" if folder is None else os.fspath(folder),
             sets=_overrides(set),

@@ -9,7 +9,7 @@ from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from . import _core, _show
+from . import _arrays, _core, _show
 
 PLANE_STRESS = ("sigma_xx", "sigma_yy", "sigma_xy")
 SPACE_STRESS = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_yz", "sigma_xz", "sigma_xy")
@@ -66,6 +66,7 @@ class Contacts(_Rows):
     """
 
     _table = "contacts"
+    _shown = ("pairs", "points", "forces", "normal_forces", "tangential_forces", "friction", "sliding")
     _names = {
         "points": "point",
         "normals": "normal",
@@ -81,6 +82,9 @@ class Contacts(_Rows):
 
     def __len__(self) -> int:
         return self._core.counts()[1]
+
+    def _repr_html_(self) -> str:
+        return _show.table_of_packing(self)
 
     def __repr__(self) -> str:
         return f"<Contacts: {len(self)}, with {', '.join(self.units)}>"
@@ -105,6 +109,7 @@ class Walls(_Rows):
     """
 
     _table = "walls"
+    _shown = ("shapes", "points", "normals", "forces", "velocities", "friction")
     _names = {
         "points": "point",
         "normals": "normal",
@@ -121,6 +126,12 @@ class Walls(_Rows):
 
     def __len__(self) -> int:
         return self._core.counts()[2]
+
+    def __repr__(self) -> str:
+        return f"<Walls: {', '.join(self.names) or 'none'}>"
+
+    def _repr_html_(self) -> str:
+        return _show.table_of_packing(self)
 
     @property
     def names(self) -> list[str]:
@@ -244,19 +255,20 @@ class Field:
         if isinstance(points, _core.Field):
             self._core = points
         else:
-            given = [
+            units, errors, samples = units or {}, errors or {}, samples or {}
+            given: list[tuple[Any, ...]] = [
                 (
                     column,
-                    (units or {}).get(column, "1"),
-                    np.asarray(values, float),
-                    None if column not in (errors or {}) else np.asarray(errors[column], float),
-                    None if column not in (samples or {}) else np.asarray(samples[column], float),
+                    units.get(column, "1"),
+                    _arrays.array(column, values),
+                    _arrays.array(column, errors[column]) if column in errors else None,
+                    _arrays.array(column, samples[column]) if column in samples else None,
                 )
                 for column, values in (columns or {}).items()
             ]
             known = {key: _attribute(value) for key, value in (attributes or {}).items()}
-            sizes = (list(shape) if shape else []) + [0, 0, 0]
-            self._core = _core.Field(np.asarray(points, float), given, sizes[:3], realizations, known)
+            sizes = ([int(n) for n in _arrays.floats("shape", shape)] if shape is not None else []) + [0, 0, 0]
+            self._core = _core.Field(_arrays.array("points", points), given, sizes[:3], realizations, known)
         self.name = name
         #: other fields of the same average: "base_response" of a response
         self.beside: dict[str, Field] = {}
@@ -352,7 +364,7 @@ class Field:
 
     def to_xarray(self) -> Any:
         """A Dataset: a grid's coordinates, or points; the columns, COLUMN_error, and COLUMN_samples with
-        the dimension realization. Units are in the attributes of each."""
+        the coordinate realization, 0, 1, ... Units are in the attributes of each."""
         return _show.field_dataset(self)
 
     def to_meshio(self) -> Any:
@@ -382,6 +394,13 @@ class Summary(dict):
     def under(self, start: str) -> dict[str, Any]:
         """Those whose name begins so, without that: summary.under("fit.osl.")."""
         return {key[len(start):]: value for key, value in self.items() if key.startswith(start)}
+
+    def to_pandas(self) -> Any:
+        """A DataFrame with the columns value and unit, a row for each key."""
+        return _show.summary_frame(self)
+
+    def _repr_html_(self) -> str:
+        return _show.summary(self)
 
 
 class Table(dict):

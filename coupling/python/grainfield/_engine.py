@@ -10,7 +10,7 @@ from typing import Any, Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from . import _core
+from . import _core, _given
 from ._commands import _overrides
 from ._data import Contacts, Packing
 
@@ -61,6 +61,13 @@ class ContactsNow:
 class Engine:
     """Grains, walls, contacts and time, from a packing on (docs/theory-dem.md).
 
+        engine = gf.Engine(packing, material=dict(law="linear", normal_stiffness=1e6, friction=0.3))
+        engine.set_damping(20)
+        engine.step(20000)                                     # falls
+        while engine.measure()["unbalanced_force_ratio"] > 1e-3:
+            engine.step(1000)                                  # settles
+        gf.average(engine.packing(), frame="packing").plot()
+
     start: the grains (disks, polygons or spheres, numbered 0, 1, 2, ...) with their velocities, walls
     with their friction, contacts (their springs; without any the first step finds them), gravity,
     cell, and load. material, motion: keys of these sections of a case (`grainfield keys material
@@ -92,7 +99,7 @@ class Engine:
             motion["time_step"] = float(time_step)
         keys = {f"material.{key}": value for key, value in (material or {}).items()}
         keys |= {f"motion.{key}": value for key, value in motion.items()}
-        self._core = _core.Engine(start._core, _overrides(keys), threads)
+        self._core = _core.Engine(_given.state("start", start), _overrides(keys), threads)
 
     @property
     def dim(self) -> int:
@@ -119,6 +126,9 @@ class Engine:
 
     def __len__(self) -> int:
         return self._core.grains
+
+    def __repr__(self) -> str:
+        return f"<Engine: {self.dim}D, {len(self)} grains, {self.steps} steps of {self.time_step:.3g} s>"
 
     @property
     def ids(self) -> np.ndarray:

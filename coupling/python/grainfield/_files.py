@@ -98,7 +98,7 @@ def write(
     """
     text = os.fspath(path)
     if text.endswith(".json"):
-        _core.write_summary(text, dict(value))
+        _core.write_summary(text, dict(value))  # type: ignore[arg-type]  # the core refuses what is no figure
         return
     file, colon, group = text.rpartition(":")
     if not colon:
@@ -107,10 +107,12 @@ def write(
         value = {group: value}
     elif isinstance(value, Field):
         value = {value.name: value} | value.beside
+    elif not isinstance(value, Mapping):
+        raise TypeError(f"{text}: found a {type(value).__name__}, allowed: a packing, a field, or several by name")
     elif not value:
         raise ValueError(f"{text}: nothing to write")
     if all(isinstance(one, Packing) for one in value.values()):
-        _core.write_packings(file, list(value), [one._core for one in value.values()], add)
+        _core.write_packings(file, list(value), [one._core for one in value.values() if isinstance(one, Packing)], add)
     elif all(isinstance(one, Field) for one in value.values()):
         _core.write_fields(text, [(name, one._core) for name, one in value.items()])
     else:

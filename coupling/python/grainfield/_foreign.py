@@ -6,8 +6,8 @@ import os
 import tempfile
 from typing import Any, Mapping, Sequence
 
-from . import _program
-from ._commands import _list, _overrides
+from . import _given, _program
+from ._commands import _overrides
 from ._data import Field, Packing
 from ._files import Collection, packings_of, write
 from ._packing import _periods
@@ -56,7 +56,7 @@ def import_packing(
     .report of what is returned holds what the command prints; its warnings are Python warnings. gf.write
     keeps the packings. Raises ValueError with the command's line.
     """
-    words: list[Any] = ["import", "--from", format, *map(os.fspath, files)]
+    words: list[Any] = ["import", "--from", format, *(os.fspath(file) for file in files)]
 
     def option(name: str, value: Any) -> None:
         if value is not None and value != "":
@@ -65,7 +65,7 @@ def import_packing(
     option("units", units)
     if isinstance(columns, Mapping):
         columns = [f"{ours}={theirs}" for ours, theirs in columns.items()]
-    for text in _list(columns):
+    for text in _given.a_list(columns):
         option("column", text)
     option("dim", dim)
     option("gravity", None if gravity is None else _vector(gravity))
@@ -76,7 +76,7 @@ def import_packing(
     for text in _periods(periodic):
         option("periodic", text.replace(":", " m:") + " m")  # whatever the units of the files
     option("fixed", fixed)
-    for step in steps.items() if isinstance(steps, Mapping) else _list(steps):
+    for step in steps.items() if isinstance(steps, Mapping) else _given.a_list(steps):
         option("step", "=".join(map(str, step)) if isinstance(step, tuple) else step)
     option("time-step", None if time_step is None else _number(time_step))
     option("group", group)
@@ -130,6 +130,8 @@ def export(
     before = _entries(folder)
     if isinstance(value, (str, os.PathLike)):
         _program.call(*words, os.fspath(value))
+    elif not isinstance(value, (Packing, Field, Mapping)):
+        raise TypeError(f'value: found {_given.found(value)}, allowed: a packing, a field, several by name, or "FILE.h5"')
     else:
         with tempfile.TemporaryDirectory(prefix="grainfield-") as place:
             file = os.path.join(place, getattr(value, "name", "packing") + ".h5")
@@ -140,8 +142,9 @@ def export(
 
 def _entries(folder: str | os.PathLike) -> dict[str, tuple[int, int]]:
     """What tells whether a file was written anew, of every file of a folder."""
-    if not os.path.isdir(folder):
+    place = os.fspath(folder)
+    if not os.path.isdir(place):
         return {}
     return {entry.path: (entry.inode(), entry.stat().st_mtime_ns)
-            for entry in sorted(os.scandir(folder), key=lambda one: one.name)
+            for entry in sorted(os.scandir(place), key=lambda one: one.name)
             if entry.is_file() and not entry.name.startswith(".")}

@@ -10,7 +10,7 @@ from typing import Any, Callable, Mapping, Sequence
 import numpy as np
 
 from . import _core
-from ._packing import whole
+from ._arrays import whole
 
 _NONE = float("nan")
 _MOST = 1e60  # of the numbers of a specimen

@@ -8,8 +8,9 @@ from typing import Any, Mapping, Sequence
 
 import numpy as np
 
-from . import _core
+from . import _core, _given
 from ._data import Packing
+from ._arrays import whole
 
 _ARGUMENTS = ("contacts", "walls", "ids", "density", "velocities", "fixed", "outlines", "friction", "gravity",
               "periodic")
@@ -20,14 +21,6 @@ _SHORT = {"velocities": ("vx", "vy", "vz"), "forces": ("fx", "fy", "fz"), "point
 _IDS = ("id", "i", "j")
 #: What is named otherwise among the arguments than among the columns.
 _ARGUMENT = {("grains", "id"): "ids", ("grains", "outline"): "outlines"}
-
-
-def whole(where: str, value: Any) -> Any:
-    """The value, unless masked: a masked array holds values that are none."""
-    if isinstance(value, np.ma.MaskedArray) and np.ma.getmaskarray(value).any():
-        raise ValueError(f"{where}: found {int(np.ma.getmaskarray(value).sum())} masked values of {value.size}, "
-                         "allowed: none; x[~x.mask] of every column leaves their rows out")
-    return value
 
 
 def _ids(where: str, array: np.ndarray) -> np.ndarray:
@@ -70,7 +63,7 @@ def _periods(periodic: Mapping[str, tuple[float, float]] | Sequence[tuple[str, A
     """"x=0.0:0.1" of {"x": (0, 0.1)}, or of [("x", (0, 0.1))]."""
     out = []
     try:
-        axes = {} if periodic is None else dict(periodic)
+        axes: dict[str, Any] = {} if periodic is None else dict(periodic)
     except (TypeError, ValueError):
         raise ValueError(f"periodic: found {periodic!r}, allowed: (low, high) of each axis in m, such as "
                          '{"x": (0, 0.1)}') from None
@@ -90,11 +83,14 @@ def _columns(table: str, given: Mapping[str, Any], dim: int, vectors: Mapping[st
         if value is None:
             continue
         name = _ARGUMENT.get((table, column), column)
-        array = np.asarray(whole(f"{table}.{name}", value))
+        array = _array(f"{table}.{name}", value)
         if column in vectors:
             if array.ndim != 2 or array.shape[1] != dim:
                 raise ValueError(f"{table}.{name}: found an array of shape {array.shape}, "
                                  f"allowed: (n, {dim})")
+        elif column == "pairs" and array.ndim == 2:
+            raise ValueError(f'{table}.pairs: found an array of shape {array.shape}, allowed: columns i and j, ids of the '
+                             'grains, and forces (n, dim); did you mean {"i": pairs[:, 0], "j": pairs[:, 1], "forces": ...}?')
         elif array.ndim != 1:
             near = difflib.get_close_matches(name, vectors, 1) if array.shape[1:] == (dim,) else []
             raise ValueError(f"{table}.{name}: found an array of shape {array.shape}, allowed: (n,)"
@@ -103,14 +99,41 @@ def _columns(table: str, given: Mapping[str, Any], dim: int, vectors: Mapping[st
         if len(array) != first[1]:
             raise ValueError(f"{table}: found {len(array)} values of {name} and {first[1]} of {first[0]}, allowed: as many")
         if column in vectors:
-            out.update({part: array[:, k] for k, part in enumerate(vectors[column][:dim])})
+            numbers = _given.array(f"{table}.{name}", array)
+            out.update({part: numbers[:, k] for k, part in enumerate(vectors[column][:dim])})
         elif array.dtype.kind in "US" or array.dtype == object:
             out[column] = [str(word) for word in value]
         elif column in _IDS:
             out[column] = _ids(f"{table}.{name}", array)
         else:
-            out[column] = array.astype(float)
+            out[column] = _given.array(f"{table}.{name}", array)
     return out
+
+
+def _array(where: str, value: Any) -> np.ndarray:
+    try:
+        return np.asarray(whole(where, value))
+    except ValueError as error:
+        if "inhomogeneous" not in str(error):
+            raise
+        raise ValueError(f"{where}: found rows of different lengths, allowed: as many values in each") from None
+
+
+def _wall_columns(walls: Any) -> dict[str, Any]:
+    """Columns of walls; texts by names are refused, because they are no columns."""
+    columns = _table("walls", walls)
+    for name, value in columns.items():
+        if np.ndim(value) == 0:
+            text = f"{name}:{value}" if isinstance(value, str) else f"{name}:y=0"
+            raise ValueError(f'walls.{name}: found {_given.found(value)}, allowed: columns name, x, y, nx, ny, ..., each (n,), '
+                             f'or texts; did you mean walls="{text}"?')
+    return columns
+
+
+def _load(load: Any) -> tuple[int, list[float]]:
+    if not isinstance(load, (tuple, list)) or len(load) != 2:
+        raise TypeError(f"load: found {_given.found(load)}, allowed: (id, force), such as (12, (0, -300))")
+    return int(load[0]), _given.floats("load", load[1])
 
 
 def packing(
@@ -153,9 +176,9 @@ def packing(
     walls. What `.check()` finds is given as Python warnings. Raises ValueError.
     """
     dim = 2 if z is None else 3
-    for name, value in (("x", x), ("y", y), ("z", z), ("radius", radius)):
+    for name, value in (("y", y), ("z", z), ("radius", radius)):
         whole(f"grains.{name}", value)
-    x = np.atleast_1d(np.asarray(x, float))
+    x = np.atleast_1d(_given.array("grains.x", x))
     n = len(x)
     given: dict[str, Any] = {"x": x, "id": np.arange(n) if ids is None else ids}
 
@@ -186,15 +209,15 @@ def packing(
     core = _core.packing(
         _columns("grains", given, dim, _SHORT),
         _columns("contacts", _table("contacts", contacts), dim, _SHORT),
-        _columns("walls", _table("walls", walls) if _is_table(walls) else {}, dim, {}),
+        _columns("walls", _wall_columns(walls) if _is_table(walls) else {}, dim, {}),
         {
             "dim": dim,
-            "gravity": None if gravity is None else list(gravity),
-            "density": float(density),
+            "gravity": None if gravity is None else _given.floats("gravity", gravity),
+            "density": _given.number("density", density, "kg/m2" if dim == 2 else "kg/m3"),
             "friction": friction,
             "walls": list(texts),
             "periodic": _periods(periodic),
-            "load": None if load is None else (int(load[0]), [float(f) for f in load[1]]),
+            "load": None if load is None else _load(load),
             "time": float(time),
             "flip_forces": flip_forces,
         },

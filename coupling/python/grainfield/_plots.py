@@ -24,7 +24,7 @@ def axes_of(ax: Any) -> Any:
 def _change(packing: Packing, before: Packing) -> np.ndarray:
     """Normal forces less those of the same contacts in the state before, N."""
     contacts = before.contacts
-    then = {(i, j): force for (i, j), force in zip(map(tuple, contacts.pairs), contacts.normal_forces)}
+    then = dict(zip(map(tuple, contacts.pairs), contacts.normal_forces))
     return np.array([
         force - then.get(pair, 0.0)
         for pair, force in zip(map(tuple, packing.contacts.pairs), packing.contacts.normal_forces)
@@ -116,7 +116,7 @@ def plot_profiles(profiles: Table, ax: Any, profile: str | None, of: str, models
     """A profile of a table with grains (called `of`) beside models."""
     names = list(dict.fromkeys(profiles["profile"].tolist()))
     if profile is None:
-        profile = names[0]
+        profile = _nearest_to_the_base(names)
     if profile not in names:
         raise ValueError(f"profile: found {profile}, allowed: {', '.join(names)}")
     ax = axes_of(ax)
@@ -132,6 +132,13 @@ def plot_profiles(profiles: Table, ax: Any, profile: str | None, of: str, models
     ax.set_ylabel(f"{quantity} ({profiles.units[data]})".strip())
     ax.legend()
     return ax
+
+
+def _nearest_to_the_base(names: list[str]) -> str:
+    """Of profiles at several heights that of the vertical stress at the lowest one, else the first."""
+    at = [re.fullmatch(r"sigma_(yy|zz) at (\S+) h", name) for name in names]
+    vertical = sorted((match[1] != "zz", float(match[2]), match[0]) for match in at if match)
+    return vertical[0][2] if vertical else names[0]
 
 
 def _quantity(profiles: Table, profile: str) -> str:

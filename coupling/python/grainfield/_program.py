@@ -21,7 +21,7 @@ def path() -> str:
     """The file of the program: GRAINFIELD_PROGRAM, that of the same build or installation, or the one
     on PATH. Raises OSError where there is none."""
     folder = Path(__file__).absolute().parent
-    places = [os.environ.get("GRAINFIELD_PROGRAM", ""), folder.parents[1] / "grainfield"]
+    places: list[str | Path] = [os.environ.get("GRAINFIELD_PROGRAM", ""), folder.parents[1] / "grainfield"]
     places += [folder.parents[3] / "bin/grainfield"] if len(folder.parents) > 3 else []
     for place in places:
         if place and os.access(place, os.X_OK) and os.path.isfile(place):

@@ -101,11 +101,13 @@ def plot_result(result: Any, ax: Any, profile: str | None, label: str = "") -> A
     """label: of the one curve that a member of a sweep has among the others'."""
     if result.members and not result.tables:
         return _plot_members(result, ax, profile)
-    kind = _kind(result)
+    kind, found = _kind(result), _found(result)
     if kind is None:
         there = "; its tables: " + ", ".join(result.tables) if result.tables else ""
         raise ValueError(f"{result.folder}: holds no table that has a drawing{there}")
     if kind == "profile":
         of = "grains" if result.snapshots is not None else "simulation"
         return plot_profiles(result.profiles, ax, profile, label or of, models=not label)
-    return _plot_table(*_found(result), ax, profile, label)
+    assert found is not None  # of every other kind
+    drawing, table = found
+    return _plot_table(drawing, table, ax, profile, label)

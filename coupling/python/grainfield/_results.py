@@ -38,6 +38,12 @@ class Structure:
     def __init__(self, found: Mapping[str, Any]):
         self.__dict__.update(found)
 
+    def __repr__(self) -> str:
+        return f"<Structure: {self.grains_counted} grains, coordination {self.coordination:.3g}, {len(self.chains)} force chains>"
+
+    def _repr_html_(self) -> str:
+        return _show.structure(self)
+
 
 def _profiles(outcome: Any) -> Table:
     notes, profile, columns = outcome.profiles()
@@ -119,7 +125,8 @@ class _Judged:
 
     def plot(self, ax: Any = None, profile: str | None = None) -> Any:
         """Draws a profile of the grains, or of what was measured, with a band of one standard error,
-        and the models beside; by default the first. Returns the axes."""
+        and the models; by default of the vertical stress at the lowest height. Returns the axes.
+        profiles["profile"] has the names of all."""
         from ._plots import plot_profiles
 
         return plot_profiles(self.profiles, ax, profile, self._of)
@@ -236,3 +243,6 @@ class Result:
 
     def __repr__(self) -> str:
         return f"<Result {self.folder}: {len(self.summary)} figures>"
+
+    def _repr_html_(self) -> str:
+        return _show.result(self)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import html
-from typing import Any, Iterable, Sequence
+from typing import Any, Iterable, Mapping, Sequence
 
 import numpy as np
 
 _MOST_ROWS = 12  # of a table in a notebook: the first and the last half of them
+_MOST_FIGURES = 60  # of a summary
 _AXES = ("x", "y", "z")
 _ADDED = ("added_forces", "former_added_forces")  # names of forces that a Python function adds or added
 
@@ -57,15 +58,56 @@ def field(of: Any) -> str:
 
 def columns(of: Any) -> str:
     """The rows of a table, of many the first and the last."""
-    count = len(next(iter(of.values()), ()))
+    return rows_of(dict(of), of.units)
+
+
+def rows_of(values: Mapping[str, Any], units: Mapping[str, str], most: int = _MOST_ROWS) -> str:
+    count = len(next(iter(values.values()), ()))
     picked = list(range(count))
-    if count > _MOST_ROWS:
-        picked = picked[: _MOST_ROWS // 2] + picked[-_MOST_ROWS // 2 :]
-    header = [name if of.units.get(name) in (None, "1", "text") else f"{name} ({of.units[name]})" for name in of]
-    rows: list[Sequence[Any]] = [[values[k] for values in of.values()] for k in picked]
-    if count > _MOST_ROWS:
-        rows.insert(_MOST_ROWS // 2, ["..."] * len(header))
+    if count > most:
+        picked = picked[: most // 2] + picked[-most // 2 :]
+    header = [name if units.get(name) in (None, "1", "text") else f"{name} ({units[name]})" for name in values]
+    rows: list[Sequence[Any]] = [[column[k] for column in values.values()] for k in picked]
+    if count > most:
+        rows.insert(most // 2, ["..."] * len(header))
     return table(header, rows) + paragraph(f"{count} rows")
+
+
+def table_of_packing(of: Any) -> str:
+    """What matters most of contacts or walls: vectors by their components."""
+    values, units = _by_components(of, of._shown)
+    return rows_of(values, units)
+
+
+def _of_summary(of: Any) -> dict[str, list]:
+    return {"key": list(of), "value": list(of.values()), "unit": list(of.units.values())}
+
+
+def summary(of: Any) -> str:
+    return rows_of(_of_summary(of), {}, _MOST_FIGURES)
+
+
+def summary_frame(of: Any) -> Any:
+    rows = _of_summary(of)
+    pandas = _package("pandas")
+    return pandas.DataFrame({name: rows[name] for name in ("value", "unit")}, index=pandas.Index(rows["key"], name="key"))
+
+
+def result(of: Any) -> str:
+    """What a run left: its verdict, and what of each kind there is to ask for."""
+    there = [("summary", f"{len(of.summary)} figures")]
+    there += [(name, ", ".join(getattr(of, name))) for name in ("tables", "fields", "snapshots", "members") if getattr(of, name)]
+    there += [("report", of.report)] if of.report else []
+    shown = paragraph(of.verdict, "h4") if of.verdict else ""
+    shown += table([f"Result {of.folder}", ""], [(f".{name}", text if len(text) < 300 else text[:300] + " ...") for name, text in there])
+    return shown + ("<ul>" + "".join(paragraph(line, "li") for line in of.warnings) + "</ul>" if of.warnings else "")
+
+
+def structure(of: Any) -> str:
+    rows = [("grains counted", of.grains_counted), ("rattlers", of.rattlers), ("coordination", of.coordination),
+            ("coordination without rattlers", of.coordination_bearing), ("force chains", len(of.chains))]
+    rows += [("mean force on the base (N)", of.base["mean"])] if of.base else []
+    return table(["Structure", ""], rows)
 
 
 def judgement(of: Any) -> str:
@@ -95,10 +137,15 @@ def frame(values: dict[str, np.ndarray], units: dict[str, str], **more: Any) -> 
 
 
 def rows_frame(of: Any) -> Any:
+    return frame(*_by_components(of))
+
+
+def _by_components(of: Any, names: Sequence[str] = ()) -> tuple[dict[str, Any], dict[str, str]]:
     """A table of a packing: arrays of several numbers a row become columns NAME_x, NAME_y or NAME_0, ..."""
-    values, units = {}, {}
-    for name, unit in of.units.items():
-        array = np.asarray(getattr(of, name))
+    values: dict[str, Any] = {"name": np.array(of.names, object)} if hasattr(of, "names") else {}
+    units = dict.fromkeys(values, "text")
+    for name in names or of.units:
+        array, unit = np.asarray(getattr(of, name)), of.units[name]
         if array.ndim == 1:
             parts = {name: array}
         else:
@@ -106,7 +153,7 @@ def rows_frame(of: Any) -> Any:
             parts = {f"{name}_{end}": array[:, k] for k, end in zip(range(array.shape[1]), ends)}
         values |= parts
         units |= dict.fromkeys(parts, unit)
-    return frame(values, units)
+    return values, units
 
 
 def axes_of_field(of: Any) -> tuple[str, ...]:
@@ -135,7 +182,7 @@ def field_dataset(of: Any) -> Any:
     if of.shape is None:
         dims: tuple[str, ...] = ("point",)
         shape: tuple[int, ...] = (len(of),)
-        coords = {axis: (dims, of.points[:, k], {"units": unit}) for k, axis in enumerate(axes)}
+        coords: dict[str, Any] = {axis: (dims, of.points[:, k], {"units": unit}) for k, axis in enumerate(axes)}
     else:  # x fastest
         dims, shape = axes[::-1], of.shape[::-1]
         grids = [of.points[:, k].reshape(shape) for k in range(len(axes))]
@@ -150,6 +197,7 @@ def field_dataset(of: Any) -> Any:
         if of.samples(name) is not None:
             samples = of.samples(name)
             values[f"{name}_samples"] = ((*dims, "realization"), samples.reshape(*shape, samples.shape[1]), attrs)
+            coords.setdefault("realization", np.arange(samples.shape[1]))
     return xarray.Dataset(values, coords, dict(of.attributes))
 
 

@@ -153,7 +153,7 @@ def _combinations(values: Mapping[str, Sequence[Any]] | Sequence[Mapping[str, An
         for key, several in values.items():
             if isinstance(several, str) or np.ndim(several) == 0:
                 raise ValueError(f"sweep: found {several!r} for {key}, allowed: a list of values, such as [{several!r}]")
-            lists.append(several.tolist() if isinstance(several, np.ndarray) else list(several))
+            lists.append(np.asarray(several).tolist() if isinstance(several, np.ndarray) else list(several))
         out = [dict(zip(values, one)) for one in itertools.product(*lists)]
     else:
         out = [dict(one) for one in values]
@@ -246,8 +246,8 @@ def sweep(
     another case or setting is refused. A member that fails lets the others finish; then its exception is
     raised. Ctrl-C writes checkpoints. Raises ValueError, RuntimeError, OSError, KeyboardInterrupt.
     """
-    outer = not isinstance(workers, int)
-    if not outer and workers < 1:
+    own = workers if isinstance(workers, int) else None  # programs at a time; None: of an executor
+    if own is not None and own < 1:
         raise ValueError(f"workers: found {workers}, allowed: 1 or more")
     file = cases().get(os.fspath(case), os.fspath(case))
     name = os.path.basename(file).removesuffix(".toml")
@@ -262,7 +262,7 @@ def sweep(
     with open(file, "rb") as text:
         about = {"case": name, "text of the case": hashlib.sha256(text.read()).hexdigest(), "quick": quick}
     _record(place, about, sets)
-    threads = threads or (1 if outer else max(1, (os.cpu_count() or 1) // workers))
+    threads = threads or (1 if own is None else max(1, (os.cpu_count() or 1) // own))
     waiting = {}
     for member, one in sets.items():
         at = os.path.join(place, member)
