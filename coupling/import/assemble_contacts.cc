@@ -51,14 +51,23 @@ Assembly::ContactColumns Assembly::contact_columns(const ForeignTable& table,
                                                    const TableColumns& columns) {
   const int dim = out_.snapshot.dim;
   ContactColumns c;
-  std::vector<std::vector<std::string>> wanted{{"i"}, {"j", "wall"}, {"fx", "fnx", "fn"}};
+  bool line = true;
+  for (const char* end : {"x1", "y1", "x2", "y2"}) line = line && columns.has(end);
+  if (dim == 3) line = line && columns.has("z1") && columns.has("z2");
+  std::vector<std::vector<std::string>> wanted{{"fx", "fnx", "fn"}};
+  if (!line) wanted.insert(wanted.begin(), {{"i"}, {"j", "wall"}});
   for (const std::string stem : {"f", "fn", "ft"})
     if (columns.has(stem + "x")) wanted.push_back({stem + "y"});
   if (dim == 3 && columns.has("fx")) wanted.push_back({"fz"});
   columns.require_all(wanted);
-  c.i = columns.need("i");
+  c.i = line ? columns.find("i") : columns.need("i");
   c.wall = columns.find("wall");
-  c.j = c.wall ? columns.find("j") : columns.need("j");
+  c.j = c.wall || line ? columns.find("j") : columns.need("j");
+  if (line)
+    for (const char end : {'1', '2'}) {
+      const auto place = [&](char axis) { return columns.find(std::string{axis, end}); };
+      c.line[end == '1' ? 0 : 1] = {place('x'), place('y'), place('z')};
+    }
   // A force beside its tangential part is told apart by the user.
   const bool in_parts = names_.chose("fnx") && columns.has("fnx");
   if (!in_parts) c.force = find_triple(columns, "f", dim);
@@ -127,34 +136,38 @@ void Assembly::check_time(const ForeignTable& grains, const ForeignTable& contac
 
 void Assembly::add_contacts(const ForeignTable& table) {
   const TableColumns named(table, names_);
-  const ContactColumns columns = contact_columns(table, named);
+  ContactColumns columns = contact_columns(table, named);
   check_states(table, named, TableKind::contacts);
   tell_columns(table, named, TableKind::contacts);
   if (columns.friction && std::isfinite(options_.friction))
     out_.notes.push_back(fmt::format("{}: --friction counts where the column {} is empty, no more",
                                      table.file, columns.friction.name));
+  settle_lines(table, columns);
+  find_vectors_beside(table, named, columns);
   ++tables_;
   const std::size_t before = contacts_.size();
   const auto sides = sides_;
   const auto given = given_;
   const Tally tally = tally_;
+  const auto beside = beside_;
   try {
     reader_.read(table, [&](const ForeignRow& row) { read_contact(columns, row, 0); });
     if (!reader_.doubt_of_end().empty()) out_.warnings.push_back(reader_.doubt_of_end());
-    return;
   } catch (const RoundedId&) {
+    contacts_.resize(before);
+    sides_ = sides;
+    given_ = given;
+    tally_ = tally;
+    beside_ = beside;
+    std::vector<ForeignColumn> ids{columns.i};
+    if (columns.j) ids.push_back(columns.j);
+    const int digits = printed_digits(reader_, table, ids);
+    reader_.read(table, [&](const ForeignRow& row) { read_contact(columns, row, digits); });
+    out_.notes.push_back(
+        fmt::format("{}: ids are printed with {} digits; of all grains only one fits each of them",
+                    table.file, digits));
   }
-  contacts_.resize(before);
-  sides_ = sides;
-  given_ = given;
-  tally_ = tally;
-  std::vector<ForeignColumn> ids{columns.i};
-  if (columns.j) ids.push_back(columns.j);
-  const int digits = printed_digits(reader_, table, ids);
-  reader_.read(table, [&](const ForeignRow& row) { read_contact(columns, row, digits); });
-  out_.notes.push_back(
-      fmt::format("{}: ids are printed with {} digits; of all grains only one fits each of them",
-                  table.file, digits));
+  tell_vectors_beside(table, columns);
 }
 
 std::optional<std::int64_t> Assembly::grain_of(const ForeignRow& row, const ForeignColumn& column,
@@ -215,7 +228,8 @@ void Assembly::refuse_unknown(const ForeignRow& row, const ForeignColumn& column
           ? ""
           : fmt::format(
                 "; a wall or facet of that number: --wall NAME:AXIS=POSITION:ids={}; a grain "
-                "that the table of grains lacks: write all of them",
+                "that the table of grains lacks: write all of them; ids that count from another "
+                "number: write those of the grains; another column: --column i=... or j=...",
                 id);
   row.refuse(fmt::format("contact of the unknown grain {}; {}{}", id, known_grains(), hint));
 }
@@ -239,6 +253,7 @@ void Assembly::refuse_two_meanings(const ForeignRow& row, const ForeignColumn& c
 }
 
 Assembly::Ends Assembly::ends_of(const ContactColumns& c, const ForeignRow& row, int digits) const {
+  if (c.by_line) return ends_of_line(c, row);
   const std::string_view told = c.wall ? row.text(c.wall) : std::string_view();
   if (!row.empty(c.wall) && told != "nan" && told != "NaN") {
     const std::int64_t wall = wall_of(row.text(c.wall));
@@ -294,6 +309,7 @@ void Assembly::read_contact(const ContactColumns& columns, const ForeignRow& row
                           ? columns.force.of(row)
                           : Vec3(columns.normal_part.of(row) + columns.tangential_part.of(row)));
   }
+  for (VectorBeside& vector : beside_) vector.add(row, c.force);
   if (columns.ft && !columns.tangent && s.dim == 2) {
     const double ft = row.number(columns.ft);
     tally_.ft_above += ft > 0;

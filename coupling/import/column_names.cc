@@ -81,6 +81,26 @@ bool ColumnNames::claims(const std::string& theirs) const {
          std::any_of(format_.begin(), format_.end(), names);
 }
 
+bool ColumnNames::is_taken_for_another(const std::string& ours, const std::string& theirs,
+                                       bool of_format) const {
+  const auto same_kind = [&](const std::string& other) {
+    for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls}) {
+      const auto has = [&](const std::string& name) {
+        return std::any_of(our_columns(kind).begin(), our_columns(kind).end(),
+                           [&](const OurColumn& column) { return column.name == name; });
+      };
+      if (has(ours) && has(other)) return true;
+    }
+    return false;
+  };
+  const auto elsewhere = [&](const auto& pair) {
+    return pair.second == theirs && pair.first != ours && same_kind(pair.first);
+  };
+  return std::any_of(chosen_.begin(), chosen_.end(), elsewhere) ||
+         (of_format && std::any_of(format_.begin(), format_.end(),
+                                   [&](const auto& pair) { return pair.second == theirs; }));
+}
+
 void ColumnNames::mark_taken(const std::string& file, const std::string& ours,
                              const std::string& theirs) {
   auto& list = taken_[file];

@@ -62,10 +62,14 @@ class DumpScan {
   [[noreturn]] void refuse_line(std::string_view line) const {
     const bool yaml = line == "---" || line.starts_with("creator:");
     const bool vtk = line.starts_with("# vtk") || line.starts_with("<?xml");
-    refuse(fmt::format("found \"{}\", expected \"ITEM: ...\"; {}", line.substr(0, 60),
-                       yaml  ? "this is a dump of style yaml: write one of style custom or local"
-                       : vtk ? "this is a file of VTK: --from vtk reads those"
-                             : "is this a dump file?"));
+    refuse(
+        fmt::format("found \"{}\", expected \"ITEM: ...\"; {}", line.substr(0, 60),
+                    yaml  ? "this is a dump of style yaml: write one of style custom or local"
+                    : vtk ? "this is a file of VTK: --from vtk reads those"
+                    : line.starts_with("LAMMPS")
+                        ? "this is a data file: read_data and a dump custom (id x y z radius mass) "
+                          "write what is read"
+                        : "is this a dump file?"));
   }
 
   // False at the end of the file, which is then truncated.
@@ -160,7 +164,9 @@ class DumpScan {
       if (line.starts_with("ITEM:"))
         refuse(fmt::format("found \"{}\", expected three lines of box bounds", line.substr(0, 60)));
       split(line, ' ', fields);
-      bool good = fields.size() == wanted;
+      // Other writers call them: "0 1 xlo xhi".
+      const bool named = fields.size() == wanted + 2 && fields.back().ends_with("hi");
+      bool good = fields.size() == wanted || named;
       for (std::size_t k = 0; good && k < wanted; ++k) {
         const auto number = dem::parse_number(fields[k]);
         good = number && std::isfinite(*number);

@@ -171,6 +171,15 @@ std::vector<std::string> TableColumns::untaken() const {
   return out;
 }
 
+bool TableColumns::chose_of(const std::string& name) const {
+  const std::string stem = name.substr(0, name.find('['));
+  return stem.size() < name.size() &&
+         std::any_of(headings_.begin(), headings_.end(), [&](const Heading& heading) {
+           return heading.name.starts_with(stem + "[") && names_.claims(heading.name) &&
+                  taken_.find(heading.index) != taken_.end();
+         });
+}
+
 bool TableColumns::tells_units() const {
   return std::any_of(headings_.begin(), headings_.end(), [&](const Heading& heading) {
     return !heading.unit.empty() && taken_.find(heading.index) != taken_.end();
@@ -240,8 +249,9 @@ std::vector<Heading>::const_iterator TableColumns::plainly(const std::string& ou
     if (table_.prefixes && at->name.size() > 2 && at->name[1] == '_' &&
         std::string_view("cfvid").find(at->name[0]) != std::string_view::npos)
       continue;
-    if (names_.claims(at->name) ||
-        names_.claims(table_.columns->at(static_cast<std::size_t>(at->index))))
+    if (names_.is_taken_for_another(ours, at->name, true) ||
+        names_.is_taken_for_another(ours, table_.columns->at(static_cast<std::size_t>(at->index)),
+                                    true))
       continue;
     if (found != none) return none;
     found = at;
@@ -270,6 +280,7 @@ ForeignColumn TableColumns::look_up(const std::string& ours) const {
       return heading.name == candidate.theirs ||
              columns[static_cast<std::size_t>(heading.index)] == candidate.theirs;
     };
+    if (!candidate.chosen && names_.is_taken_for_another(ours, candidate.theirs, false)) continue;
     const auto at = std::find_if(headings_.begin(), headings_.end(), is_theirs);
     std::optional<double> constant;
     if (at == headings_.end() && candidate.chosen) constant = constant_of(ours, candidate.theirs);
@@ -326,7 +337,9 @@ void TableColumns::missing(const std::string& what, const std::string& option,
   if (table_.arrays != nullptr && !table_.any_names)
     throw std::invalid_argument(fmt::format("{}: no \"{}\"; found: {}{}", table_.file, what, found,
                                             argument.empty() ? "" : "; " + argument));
-  const std::string near = suggestion(what);
+  std::string near = suggestion(what);
+  if (what == "y" && has("x") && has("z"))
+    near = "a plane of x and z: --dim 2 --column y=z --column fy=fz, and walls across y";
   throw std::invalid_argument(
       fmt::format("{}:{}: no column \"{}\"; found: {}{}; other names by --column {}=THEIRS{}",
                   table_.file, table_.header_line, what, found, near.empty() ? "" : "; " + near,
