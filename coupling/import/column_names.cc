@@ -93,8 +93,13 @@ bool ColumnNames::is_taken_for_another(const std::string& ours, const std::strin
     }
     return false;
   };
+  // A spring is a part of the force: the column of a tangential force may be both.
+  const auto is_spring = [](const std::string& name) {
+    return name == "spring" || name == "sx" || name == "sy" || name == "sz";
+  };
   const auto elsewhere = [&](const auto& pair) {
-    return pair.second == theirs && pair.first != ours && same_kind(pair.first);
+    return pair.second == theirs && pair.first != ours && same_kind(pair.first) &&
+           !is_spring(pair.first);
   };
   return std::any_of(chosen_.begin(), chosen_.end(), elsewhere) ||
          (of_format && std::any_of(format_.begin(), format_.end(),
