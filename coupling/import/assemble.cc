@@ -58,9 +58,8 @@ void Assembly::settle_dimension() {
         s.dim == 2 ? "density in kg/m2, volume in m2, mass in kg or kg/m"
                    : "density in kg/m3, volume in m3, mass in kg",
         // Without a z the grains can be of the plane alone.
-        s.dim == 2 && has_z_ && options_.dim == 0
-            ? "; --dim 3 for spheres whose centres have one z"
-            : ""));
+        s.dim == 2 && has_z_ && options_.dim == 0 ? "; --dim 3 for spheres whose centres have one z"
+                                                  : ""));
   if (s.dim == 2 && other != rows_.end())
     throw std::invalid_argument(fmt::format(
         "{}: grain {} has z = {}, grain {} has z = {}; 2D needs one z: --dim 3 for grains "

@@ -94,6 +94,9 @@ class Assembly {
     double tangential = 0, told_tangential = 0;  ///< N, sums over these rows
     long long bearing = 0, along = 0;            ///< pairs that bear a force; along their normal
     std::string first_off_size;
+    long long fn_above = 0, fn_below = 0;  ///< sizes fn beside a vector of the tangential part
+    long long parts = 0,
+              oblique = 0;  ///< forces in two parts; of them, those not across each other
     long long shaped = 0, off_shape = 0;  ///< points on outlines and superellipsoids; far off
     std::string first_off_shape;
     long long ft_above = 0, ft_below = 0;  ///< sizes ft without a direction, in 2D
@@ -257,6 +260,10 @@ class Assembly {
   void settle_lines(const ForeignTable& table, ContactColumns& columns);
   Ends ends_of_line(const ContactColumns& columns, const ForeignRow& row) const;
   /// Throws where the id of a row is that of a grain and of a wall.
+  /// Whether a normal of a round pair, or at a wall, points from j to i.
+  bool points_backwards(const dem::Contact& c, const dem::Vec3& normal) const;
+  void count_parts(const ContactColumns& columns, const ForeignRow& row);
+  bool names_other_grain(const ContactColumns& c, const ForeignRow& row, int digits) const;
   void refuse_two_meanings(const ForeignRow& row, const ForeignColumn& column) const;
   [[noreturn]] void refuse_unknown(const ForeignRow& row, const ForeignColumn& column) const;
   /// A force of normal and tangential size, on the first grain.

@@ -23,6 +23,10 @@ constexpr double kSameSize = 1e-2;
 // Of a force that lies along its normal: what few digits leave.
 constexpr double kAlong = 1e-3;
 
+// Cosine of the angle between the parts of a force, normal and tangential: few digits leave less.
+constexpr double kOblique = 0.1;
+constexpr double kNoPart = 1e-6;  // of the other part: rounding, whose direction is any
+
 // "T_x" and "T_y", "c_p[4]" and "c_p[5]": names that differ in one letter, the next axis or number.
 bool follows(const std::string& name, const std::string& next) {
   if (name.size() != next.size()) return false;
@@ -228,6 +232,21 @@ void Assembly::check_parts(const ContactColumns& columns, const ForeignRow& row)
                   "... and ftx ..., allowed: those that agree; --column fx,fy,fz=... or --column "
                   "fnx,fny,fnz=... says which count",
                   whole.x(), whole.y(), whole.z(), sum.x(), sum.y(), sum.z()));
+}
+
+void Assembly::count_parts(const ContactColumns& columns, const ForeignRow& row) {
+  if (columns.normal_part) {
+    const Vec3 fn = columns.normal_part.of(row), ft = columns.tangential_part.of(row);
+    const double size = fn.norm() * ft.norm();
+    const bool both = ft.norm() > kNoPart * fn.norm() && fn.norm() > kNoPart * ft.norm();
+    tally_.parts += both;
+    tally_.oblique += both && std::abs(fn.dot(ft)) > kOblique * size;
+  }
+  if (columns.fn && columns.tangential_part) {
+    const double fn = row.number(columns.fn);
+    tally_.fn_above += fn > 0;
+    tally_.fn_below += fn < 0;
+  }
 }
 
 }  // namespace grainfield::coupling

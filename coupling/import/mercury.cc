@@ -24,6 +24,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "coupling/import/foreign_kind.h"
 #include "coupling/import/format.h"
 #include "dem/snapshot/limits.h"
 #include "dem/snapshot/number.h"
@@ -61,8 +62,12 @@ class MercuryScan {
 
  private:
   [[noreturn]] void refuse(std::string_view line, const std::string& wanted) const {
-    throw std::invalid_argument(
-        fmt::format("{}: found \"{}\", expected {}", lines_.where(), line.substr(0, 60), wanted));
+    // The sign of a comment may be off already.
+    std::string kind = foreign_kind(line, "mercury");
+    if (kind.empty()) kind = foreign_kind(fmt::format("#{}", line), "mercury");
+    throw std::invalid_argument(fmt::format("{}: found \"{}\", expected {}{}", lines_.where(),
+                                            line.substr(0, 60), wanted,
+                                            kind.empty() ? "" : "; this is " + kind));
   }
 
   static std::shared_ptr<const Names> columns_of_contacts() {

@@ -150,6 +150,7 @@ void StepList::settle(bool by_time, const ReadKeys& read_keys) {
       continue;
     }
     stepped_ = stepped_ || table.step.has_value();
+    if (!table.step && without_step_.empty()) without_step_ = table.file;
     StepTables& tables = steps_[table.step.value_or(0)];
     const bool contacts = entry.kind == TableKind::contacts;
     if (contacts && std::find(contact_kinds_.begin(), contact_kinds_.end(), table.columns.get()) ==
@@ -352,10 +353,16 @@ void StepList::require_whole(long long step, const ImportOptions& options) const
       if (!(grains ? all.grains : all.contacts).empty()) out.push_back(number);
     return out;
   };
-  const std::string there = stepped_ && whole.empty()
-                                ? fmt::format("; grains are there of the steps {}, contacts of {}",
-                                              list_of(steps_with(true)), list_of(steps_with(false)))
-                                : others;
+  const std::string there =
+      stepped_ && whole.empty()
+          ? fmt::format("; grains are there of the steps {}, contacts of {}{}",
+                        list_of(steps_with(true)), list_of(steps_with(false)),
+                        without_step_.empty() ? ""
+                                              : fmt::format("; {} tells no step and counts as "
+                                                            "step 0: give the grains of its "
+                                                            "state alone",
+                                                            without_step_))
+          : others;
   if (tables.grains.empty())
     throw std::invalid_argument(fmt::format("no table of grains{} in {}{}", which, files, there));
   if (hold_no_row(tables.grains))

@@ -44,6 +44,14 @@ std::string without_number(const std::string& told) {
   return out;
 }
 
+// "|---|:--:|", "+----+", "----- -----": a line below names, of Markdown and of text tables.
+bool is_rule(std::string_view text) {
+  if (text.find_first_not_of("-=+|: \t") != std::string_view::npos) return false;
+  return text.find("---") != std::string_view::npos || text.find("===") != std::string_view::npos ||
+         (text.find("--") != std::string_view::npos &&
+          text.find_first_of("|+") != std::string_view::npos);
+}
+
 }  // namespace
 
 const ArrayColumn* ForeignRow::array_of(const ForeignColumn& column) const {
@@ -252,7 +260,7 @@ void TableReader::read(const ForeignTable& table,
   for (long long n = 0; (table.rows < 0 || n < table.rows) && lines.next(line);) {
     row.line = lines.line();
     const std::string_view text = trimmed(line);
-    if (text.empty()) continue;
+    if (text.empty() || (table.rows < 0 && is_rule(text))) continue;
     if (table.rows < 0 && text.front() == '#') {
       RowParts behind;
       const auto& values = behind.of(text, table.separator);
