@@ -60,6 +60,7 @@ result" means not run or not measured; the row says which.
 - **"Hardly changes"** means by less than a tenth in our whole interval. "Changes" means by more than a tenth in our
   whole interval. Between them the spread is too wide to tell. "Negligible" means less than a tenth of the
   effect of μ, likewise.
+- **Causes.** Some rows that differ end with the cause, or with what was tried in vain.
 - **The steeper flank** is the flank with the larger mean, on whichever side. The study's page says which side was
   meant.
 - **Nothing was tuned to agree**, with one exception: the window of Liffman's H at 32.6° was chosen after the piles
