@@ -67,7 +67,8 @@ std::array<std::optional<std::int64_t>, 2> Assembly::grains_of_line(const Contac
 void Assembly::settle_lines(const ForeignTable& table, ContactColumns& c) {
   if (!c.line[0]) return;
   if (by_x_.empty()) sort_for_copies();
-  c.by_line = !c.i || !c.j;
+  // A column of the grain and one of the wall tell both, whichever end of the line stands first.
+  c.by_line = !c.i || !(c.j || c.wall);
   if (c.by_line) return;
   // Ids of meshes and triangles, as LIGGGHTS writes them, or counted from another number.
   long long all = 0, others = 0;
@@ -76,7 +77,8 @@ void Assembly::settle_lines(const ForeignTable& table, ContactColumns& c) {
     const auto grains = grains_of_line(c, row);
     ++all;
     if (!grains[0] && !grains[1]) return;
-    const std::string told[] = {std::string(row.text(c.i)), std::string(row.text(c.j))};
+    const std::string told[] = {std::string(row.text(c.i)),
+                                c.j ? std::string(row.text(c.j)) : std::string()};
     const auto names = [&](std::int64_t grain) {
       const std::int64_t id = out_.snapshot.grains[static_cast<std::size_t>(grain)].id;
       return std::any_of(std::begin(told), std::end(told), [&](const std::string& text) {
@@ -98,7 +100,7 @@ void Assembly::settle_lines(const ForeignTable& table, ContactColumns& c) {
   out_.warnings.push_back(fmt::format(
       "{}: {} of {} rows join other grains than {} and {} name (the first: {}): the places "
       "of the ends count, and forces at walls act on the grain",
-      table.file, others, all, c.i.name, c.j.name, first));
+      table.file, others, all, c.i.name, (c.j ? c.j : c.wall).name, first));
 }
 
 Assembly::Ends Assembly::ends_of_line(const ContactColumns& c, const ForeignRow& row) const {

@@ -113,6 +113,26 @@ TEST_F(ImportPrograms, LinesWhoseIdsAreOfMeshes) {
   EXPECT_EQ(only(shifted).snapshot.contacts.at(1).j, 2);
 }
 
+// LIGGGHTS' wall/gran/local as a dump: the wall's end of the line is first, the force is the
+// grain's.
+TEST_F(ImportPrograms, AGrainAndAWallBesideALineThatBeginsAtTheWall) {
+  const auto walls = [&](const char* grain) {
+    return import(
+        "csv",
+        {write("g.csv", "id,x,y,z,radius,mass\n1,0,0,0.0099,0.01,1\n2,0,0,0.0297,0.01,1\n"),
+         write("c.csv", "x1,y1,z1,x2,y2,z2,i,j,fx,fy,fz\n0,0,0.0099,0,0,0.0297,1,2,0,0,-9.81\n"),
+         write("w.csv", std::string("x1,y1,z1,x2,y2,z2,wall,i,fx,fy,fz\n0,0,0,0,0,0.0099,0,") +
+                            grain + ",0,0,19.62\n")},
+        [](ImportOptions& o) { o.walls.push_back(parse_wall("floor:z=0:ids=0")); });
+  };
+  expect_at_rest(walls("1"), 2, "its own id");
+  // That of a triangle: the line tells the grain.
+  const Outcome other = walls("2");
+  expect_at_rest(other, 2, "another id");
+  EXPECT_THAT(only(other).warnings,
+              Contains(HasSubstr("1 of 1 rows join other grains than i and wall name")));
+}
+
 TEST_F(ImportPrograms, ArraysOfPartsOfForces) {
   const std::string g = spheres(), ids = numbers("id1", "1 2") + numbers("id2", "2 3");
   for (const auto& [normal, tangential] : {std::pair{"normalForce", "shearForce"},
