@@ -23,7 +23,6 @@
 #include "coupling/output/judgement.h"
 #include "coupling/output/output_folder.h"
 #include "coupling/output/tables.h"
-#include "coupling/report/judgement.h"
 #include "coupling/run/comparison_page.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/summary_keys.h"
@@ -276,7 +275,6 @@ CompareOutcome compare_field(const CompareRequest& request) {
     write_judgement(results->staging(), comparison.judgement);
     Report page = page_of(request, observed, comparison, models, made);
     write_profile_tables(results->staging(), page, comparison);
-    picture_first(page);
     out.lacks = write_report(results->staging("report.html"), page).complaint();
     write_summary(results->staging("summary.json"), summary);
     out.gone = told_of_gone(request.folder, results->publish());

@@ -7,6 +7,7 @@
 #include "continuum/constants.h"
 #include "coupling/judge/words.h"
 #include "coupling/output/tables.h"
+#include "coupling/report/judgement.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -102,6 +103,7 @@ void write_profile_tables(const std::string& folder, Report& report, const Compa
   report.sections.emplace_back(Text{
       "Place by place",
       fmt::format("tables.html has the {} and the models at every place.", c.subject()), false});
+  picture_first(report);
 }
 
 Eigen::VectorXd both_sides(const Eigen::VectorXd& by_radius) {

@@ -28,8 +28,8 @@
 #include "coupling/studies/pile/page.h"
 #include "coupling/studies/pile/pile_ensemble.h"
 #include "coupling/studies/pile/pile_run.h"
+#include "coupling/studies/pile/simulation.h"
 #include "dem/snapshot/number.h"
-#include "dem/study/setup.h"
 
 namespace grainfield::coupling {
 namespace {

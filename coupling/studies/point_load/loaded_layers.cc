@@ -7,7 +7,7 @@
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/base.h"
 #include "coupling/run/study_result.h"
-#include "dem/study/setup.h"
+#include "coupling/studies/point_load/simulation.h"
 
 namespace grainfield::coupling {
 

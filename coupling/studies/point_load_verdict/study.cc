@@ -22,12 +22,12 @@
 #include "coupling/run/ensemble.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/study_result.h"
+#include "coupling/studies/point_load/simulation.h"
 #include "coupling/studies/point_load/study.h"
 #include "coupling/studies/point_load_verdict/keys.h"
+#include "dem/run/run.h"
 #include "dem/snapshot/contact_changes.h"
 #include "dem/snapshot/snapshot.h"
-#include "dem/study/run.h"
-#include "dem/study/setup.h"
 
 namespace grainfield::coupling {
 namespace {
