@@ -53,10 +53,13 @@ void Assembly::settle_dimension() {
       "import a packing in the xz-plane)";
   s.dim = options_.dim != 0 ? options_.dim : has_z_ && other != rows_.end() ? 3 : 2;
   if (const auto& told = s.dim == 2 ? space_units_ : plane_units_; !told.empty())
-    throw std::invalid_argument(
-        fmt::format("{} in a packing in {}D, allowed: {}", told.front(), s.dim,
-                    s.dim == 2 ? "density in kg/m2, volume in m2, mass in kg or kg/m"
-                               : "density in kg/m3, volume in m3, mass in kg"));
+    throw std::invalid_argument(fmt::format(
+        "{} in a packing in {}D, allowed: {}{}", told.front(), s.dim,
+        s.dim == 2 ? "density in kg/m2, volume in m2, mass in kg or kg/m"
+                   : "density in kg/m3, volume in m3, mass in kg",
+        // Without a z the grains can be of the plane alone.
+        s.dim == 2 && has_z_ && options_.dim == 0 ? "; --dim 3 for spheres whose centres have one z"
+                                                  : ""));
   if (s.dim == 2 && other != rows_.end())
     throw std::invalid_argument(fmt::format(
         "{}: grain {} has z = {}, grain {} has z = {}; 2D needs one z: --dim 3 for grains "

@@ -92,7 +92,11 @@ class Assembly {
     std::string first_far;
     long long sized = 0, off_size = 0;  ///< rows with sizes beside the force; contradicting it
     double tangential = 0, told_tangential = 0;  ///< N, sums over these rows
+    long long bearing = 0, along = 0;            ///< pairs that bear a force; along their normal
     std::string first_off_size;
+    long long fn_above = 0, fn_below = 0;  ///< sizes fn beside a vector of the tangential part
+    long long parts = 0,
+              oblique = 0;  ///< forces in two parts; of them, those not across each other
     long long shaped = 0, off_shape = 0;  ///< points on outlines and superellipsoids; far off
     std::string first_off_shape;
     long long ft_above = 0, ft_below = 0;  ///< sizes ft without a direction, in 2D
@@ -213,6 +217,11 @@ class Assembly {
   /// Counts a row whose sizes contradict its force.
   void check_sizes(const ContactRow& row);
   void tell_sizes();
+  /// Remembers the vectors that a table has beside its force and nobody takes.
+  void find_vectors_beside(const ForeignTable& table, const TableColumns& columns,
+                           const ContactColumns& c);
+  /// Warns where all forces lie along the normals and all of such a vector across them.
+  void tell_vectors_beside(const ForeignTable& table, const ContactColumns& c);
   void read_contact(const ContactColumns& columns, const ForeignRow& row, int digits);
   /// The grains or the grain and the wall of a row; swapped where the wall stands first.
   struct Ends {
@@ -241,7 +250,20 @@ class Assembly {
   std::vector<std::int64_t> originals_of(const dem::Vec3& point, const dem::Vec3& outwards,
                                          double overlap) const;
   void sort_for_copies();
+  /// The grain whose centre, or that of whose image, is at a place.
+  std::optional<std::int64_t> grain_at(const dem::Vec3& place) const;
+  /// -1 - w of the flat wall through a place; 0: none.
+  std::int64_t wall_at(const dem::Vec3& place, double radius) const;
+  std::array<std::optional<std::int64_t>, 2> grains_of_line(const ContactColumns& columns,
+                                                            const ForeignRow& row) const;
+  /// Decides whether ids or the places of both ends tell the bodies of a table's contacts.
+  void settle_lines(const ForeignTable& table, ContactColumns& columns);
+  Ends ends_of_line(const ContactColumns& columns, const ForeignRow& row) const;
   /// Throws where the id of a row is that of a grain and of a wall.
+  /// Whether a normal of a round pair, or at a wall, points from j to i.
+  bool points_backwards(const dem::Contact& c, const dem::Vec3& normal) const;
+  void count_parts(const ContactColumns& columns, const ForeignRow& row);
+  bool names_other_grain(const ContactColumns& c, const ForeignRow& row, int digits) const;
   void refuse_two_meanings(const ForeignRow& row, const ForeignColumn& column) const;
   [[noreturn]] void refuse_unknown(const ForeignRow& row, const ForeignColumn& column) const;
   /// A force of normal and tangential size, on the first grain.
@@ -301,6 +323,13 @@ class Assembly {
   bool contacts_expected_ = true;
   std::array<bool, 3> axis_told_{true, true, true};  // images
   Tally tally_;
+  struct VectorBeside {  ///< three columns (two in the plane) beside the force of a table
+    std::vector<std::string> names;
+    std::vector<ForeignColumn> columns;
+    long long rows = 0, across = 0, unit = 0;  ///< that are not zero; across the force; directions
+    void add(const ForeignRow& row, const dem::Vec3& force);
+  };
+  std::vector<VectorBeside> beside_;
   int place_digits_ = 0;  // most that a coordinate of the files has
   struct State {          ///< a time or step that all rows of a table tell
     std::string file, name, value;

@@ -5,12 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <stdexcept>
 
 #include "coupling/import/synonyms.h"
-#include "dem/snapshot/images.h"
 #include "dem/snapshot/limits.h"
 
 namespace grainfield::coupling {
@@ -18,11 +15,6 @@ namespace grainfield::coupling {
 namespace {
 
 using dem::Vec3;
-
-// Tolerance for a tangential direction's length and its cosine to the normal: few digits leave it.
-constexpr double kOffUnit = 1e-2;
-// Share of the normal force that is rounding, whose direction is any.
-constexpr double kNoForce = 1e-6;
 
 // Share of a force along z that is rounding in 2D.
 constexpr double kFlatForce = 1e-9;
@@ -45,20 +37,52 @@ int printed_digits(TableReader& reader, const ForeignTable& table,
   return most;
 }
 
+// Of YADE's VTKRecorder: absForceT are the sizes of the components of the shear force. Empty where
+// no column is so called.
+std::string lost_signs(const TableColumns& columns) {
+  const std::vector<std::string> names = columns.untaken();
+  const auto at = std::find_if(names.begin(), names.end(), [](const std::string& name) {
+    return plain_column_name(name).starts_with("absforce");
+  });
+  if (at == names.end()) return "";
+  return fmt::format(
+      "{} ... are sizes of components, without their signs: no force can be made of them; YADE's "
+      "i.phys.shearForce has them (export.VTKExporter, or the script of docs/import-programs.md), "
+      "--column ft=0 leaves the tangential part out",
+      *at);
+}
+
+// What a column says that is no name of a wall: a flag.
+bool is_flag(std::string_view text) {
+  for (const std::string_view word :
+       {"0", "1", "True", "False", "true", "false", "TRUE", "FALSE", "yes", "no"})
+    if (text == word) return true;
+  return false;
+}
+
 }  // namespace
 
 Assembly::ContactColumns Assembly::contact_columns(const ForeignTable& table,
                                                    const TableColumns& columns) {
   const int dim = out_.snapshot.dim;
   ContactColumns c;
-  std::vector<std::vector<std::string>> wanted{{"i"}, {"j", "wall"}, {"fx", "fnx", "fn"}};
+  bool line = true;
+  for (const char* end : {"x1", "y1", "x2", "y2"}) line = line && columns.has(end);
+  if (dim == 3) line = line && columns.has("z1") && columns.has("z2");
+  std::vector<std::vector<std::string>> wanted{{"fx", "fnx", "fn"}};
+  if (!line) wanted.insert(wanted.begin(), {{"i"}, {"j", "wall"}});
   for (const std::string stem : {"f", "fn", "ft"})
     if (columns.has(stem + "x")) wanted.push_back({stem + "y"});
   if (dim == 3 && columns.has("fx")) wanted.push_back({"fz"});
   columns.require_all(wanted);
-  c.i = columns.need("i");
+  c.i = line ? columns.find("i") : columns.need("i");
   c.wall = columns.find("wall");
-  c.j = c.wall ? columns.find("j") : columns.need("j");
+  c.j = c.wall || line ? columns.find("j") : columns.need("j");
+  if (line)
+    for (const char end : {'1', '2'}) {
+      const auto place = [&](char axis) { return columns.find(std::string{axis, end}); };
+      c.line[end == '1' ? 0 : 1] = {place('x'), place('y'), place('z')};
+    }
   // A force beside its tangential part is told apart by the user.
   const bool in_parts = names_.chose("fnx") && columns.has("fnx");
   if (!in_parts) c.force = find_triple(columns, "f", dim);
@@ -72,10 +96,11 @@ Assembly::ContactColumns Assembly::contact_columns(const ForeignTable& table,
     c.fn = columns.find("fn");
     if (!c.fn) {
       const bool size = !same_meaning("fn", columns.untaken()).empty();
-      columns.missing(size                 ? "fn"
-                      : columns.has("ftx") ? "fnx"
-                                           : "fx",
-                      "", "forces (n, dim) tells it");
+      const bool parts = !same_meaning("fnx", columns.untaken()).empty();
+      columns.missing(size                          ? "fn"
+                      : parts || columns.has("ftx") ? "fnx"
+                                                    : "fx",
+                      lost_signs(columns), "forces (n, dim) tells it");
     }
     c.ft = columns.find("ft");
     // A size along the normal, and the tangential part as a vector.
@@ -107,7 +132,10 @@ Assembly::ContactColumns Assembly::contact_columns(const ForeignTable& table,
 
 ForeignColumn Assembly::no_friction(const ForeignTable& table, const TableColumns& columns) {
   const bool only = table.any_names && columns.untaken().empty();
-  if (!only) columns.missing("ft", "without friction: --column ft=0", "without friction: ft = 0");
+  const std::string lost = lost_signs(columns);
+  if (!only)
+    columns.missing("ft", lost.empty() ? "without friction: --column ft=0" : lost,
+                    "without friction: ft = 0");
   out_.warnings.push_back(fmt::format(
       "{}:{}: no column tells a tangential force: the contacts are read without friction",
       table.file, table.header_line));
@@ -127,34 +155,38 @@ void Assembly::check_time(const ForeignTable& grains, const ForeignTable& contac
 
 void Assembly::add_contacts(const ForeignTable& table) {
   const TableColumns named(table, names_);
-  const ContactColumns columns = contact_columns(table, named);
+  ContactColumns columns = contact_columns(table, named);
   check_states(table, named, TableKind::contacts);
   tell_columns(table, named, TableKind::contacts);
   if (columns.friction && std::isfinite(options_.friction))
     out_.notes.push_back(fmt::format("{}: --friction counts where the column {} is empty, no more",
                                      table.file, columns.friction.name));
+  settle_lines(table, columns);
+  find_vectors_beside(table, named, columns);
   ++tables_;
   const std::size_t before = contacts_.size();
   const auto sides = sides_;
   const auto given = given_;
   const Tally tally = tally_;
+  const auto beside = beside_;
   try {
     reader_.read(table, [&](const ForeignRow& row) { read_contact(columns, row, 0); });
     if (!reader_.doubt_of_end().empty()) out_.warnings.push_back(reader_.doubt_of_end());
-    return;
   } catch (const RoundedId&) {
+    contacts_.resize(before);
+    sides_ = sides;
+    given_ = given;
+    tally_ = tally;
+    beside_ = beside;
+    std::vector<ForeignColumn> ids{columns.i};
+    if (columns.j) ids.push_back(columns.j);
+    const int digits = printed_digits(reader_, table, ids);
+    reader_.read(table, [&](const ForeignRow& row) { read_contact(columns, row, digits); });
+    out_.notes.push_back(
+        fmt::format("{}: ids are printed with {} digits; of all grains only one fits each of them",
+                    table.file, digits));
   }
-  contacts_.resize(before);
-  sides_ = sides;
-  given_ = given;
-  tally_ = tally;
-  std::vector<ForeignColumn> ids{columns.i};
-  if (columns.j) ids.push_back(columns.j);
-  const int digits = printed_digits(reader_, table, ids);
-  reader_.read(table, [&](const ForeignRow& row) { read_contact(columns, row, digits); });
-  out_.notes.push_back(
-      fmt::format("{}: ids are printed with {} digits; of all grains only one fits each of them",
-                  table.file, digits));
+  tell_vectors_beside(table, columns);
 }
 
 std::optional<std::int64_t> Assembly::grain_of(const ForeignRow& row, const ForeignColumn& column,
@@ -215,7 +247,8 @@ void Assembly::refuse_unknown(const ForeignRow& row, const ForeignColumn& column
           ? ""
           : fmt::format(
                 "; a wall or facet of that number: --wall NAME:AXIS=POSITION:ids={}; a grain "
-                "that the table of grains lacks: write all of them",
+                "that the table of grains lacks: write all of them; ids that count from another "
+                "number: write those of the grains; another column: --column i=... or j=...",
                 id);
   row.refuse(fmt::format("contact of the unknown grain {}; {}{}", id, known_grains(), hint));
 }
@@ -239,9 +272,17 @@ void Assembly::refuse_two_meanings(const ForeignRow& row, const ForeignColumn& c
 }
 
 Assembly::Ends Assembly::ends_of(const ContactColumns& c, const ForeignRow& row, int digits) const {
+  if (c.by_line) return ends_of_line(c, row);
   const std::string_view told = c.wall ? row.text(c.wall) : std::string_view();
   if (!row.empty(c.wall) && told != "nan" && told != "NaN") {
     const std::int64_t wall = wall_of(row.text(c.wall));
+    // "0" and "1" beside the ids of both bodies.
+    if (is_flag(told) && c.j && !row.empty(c.j) && (wall == 0 || names_other_grain(c, row, digits)))
+      row.refuse(fmt::format(
+          "column {}: found \"{}\" beside {} in the column of j: a flag, where the name or the id "
+          "of a wall is expected; --column wall= takes another column, and without it j is a grain "
+          "or a wall",
+          c.wall.name, told, row.text(c.j)));
     if (wall == 0) refuse_unknown(row, c.wall);
     const auto grain = grain_of(row, c.i, digits);
     if (!grain) refuse_unknown(row, c.i);
@@ -269,6 +310,11 @@ Assembly::Ends Assembly::ends_of(const ContactColumns& c, const ForeignRow& row,
   return {*first, *second, false, *second < 0 ? facet_of(*second, row.text(c.j)) : 0, copied};
 }
 
+bool Assembly::names_other_grain(const ContactColumns& c, const ForeignRow& row, int digits) const {
+  const auto first = body_of(row, c.i, digits), second = body_of(row, c.j, digits);
+  return first && second && *second >= 0 && *first != *second;
+}
+
 void Assembly::read_contact(const ContactColumns& columns, const ForeignRow& row, int digits) {
   const dem::Snapshot& s = out_.snapshot;
   const Ends ends = ends_of(columns, row, digits);
@@ -287,6 +333,7 @@ void Assembly::read_contact(const ContactColumns& columns, const ForeignRow& row
   if (has_normal) c.normal = side * columns.normal.of(row);
   if (s.dim == 2) c.normal.z() = 0;
   const double flip = options_.sign_of(c.j < 0), sign = side * format_.force_sign * flip;
+  count_parts(columns, row);
   if (columns.fn) {
     c.force = flip * force_of_sizes(columns, row, c, side);
   } else {
@@ -294,6 +341,7 @@ void Assembly::read_contact(const ContactColumns& columns, const ForeignRow& row
                           ? columns.force.of(row)
                           : Vec3(columns.normal_part.of(row) + columns.tangential_part.of(row)));
   }
+  for (VectorBeside& vector : beside_) vector.add(row, c.force);
   if (columns.ft && !columns.tangent && s.dim == 2) {
     const double ft = row.number(columns.ft);
     tally_.ft_above += ft > 0;
@@ -316,62 +364,6 @@ void Assembly::read_contact(const ContactColumns& columns, const ForeignRow& row
   c.sliding = row.flag(columns.sliding);
   add_contact(std::move(r), has_normal && !format_.directions_turn_together, pointed,
               row.empty(columns.sliding));
-}
-
-void Assembly::check_tangent(const ForeignRow& row, const Vec3& normal, Vec3& tangent) {
-  const double length = tangent.norm();
-  if (!(std::abs(length - 1) <= kOffUnit && std::abs(tangent.dot(normal)) <= kOffUnit))
-    row.refuse(fmt::format(
-        "columns tx, ty, tz: found a direction of length {:g} at {:.3g} degrees from the normal, "
-        "allowed: 1 at 90 degrees; what are no directions (torques, forces) take another name: "
-        "--column ftx,fty,ftz=... are the components of a tangential force",
-        length,
-        std::acos(std::clamp(tangent.dot(normal) / length, -1.0, 1.0)) * 180 / std::numbers::pi));
-  tangent /= length;
-}
-
-dem::Vec3 Assembly::normal_of_shapes(const ForeignRow& row, const dem::Contact& c) const {
-  const dem::Snapshot& s = out_.snapshot;
-  if (c.j < 0) return -s.walls[static_cast<std::size_t>(-1 - c.j)].normal;
-  const dem::Grain &a = s.grains[static_cast<std::size_t>(c.i)],
-                   &b = s.grains[static_cast<std::size_t>(c.j)];
-  for (const dem::Grain* grain : {&a, &b})
-    if (!grain->outline.empty() || !grain->axes.isZero(0))
-      row.refuse("column fn: a size, and no normal: nx, ny (3D: nz) tell its direction");
-  const Vec3 branch = b.position - a.position;
-  return branch + dem::shift_to(s.cell, dem::nearest_image(s.cell, branch));
-}
-
-dem::Vec3 Assembly::force_of_sizes(const ContactColumns& columns, const ForeignRow& row,
-                                   const dem::Contact& c, double side) const {
-  const double fn = row.number(columns.fn), ft = columns.ft ? row.number(columns.ft) : 0;
-  const dem::Snapshot& s = out_.snapshot;
-  // Seen from the grain where a wall is first.
-  const bool together = format_.directions_turn_together;
-  Vec3 normal = columns.normal ? Vec3((together ? 1 : side) * columns.normal.of(row))
-                               : normal_of_shapes(row, c),
-       tangent = Vec3::Zero();
-  const double length = normal.norm();
-  if (!(length > 0 && std::isfinite(length)))
-    row.refuse(fmt::format("the contact's normal has length {:g}", length));
-  normal /= length;
-  double sign = 1;
-  if (columns.tangential_part)
-    return side * format_.force_sign * columns.tangential_part.of(row) - fn * normal;
-  if (columns.tangent) {
-    tangent = (together ? 1 : side) * columns.tangent.of(row);
-    if (std::abs(ft) > kNoForce * std::abs(fn)) check_tangent(row, normal, tangent);
-    sign = format_.force_sign;
-  } else if (s.dim == 2) {
-    tangent = {-normal.y(), normal.x(), 0};
-  } else if (ft != 0) {
-    row.refuse("column ft: a size, and no direction: tx, ty, tz tell it");
-  }
-  if (!together) return sign * ft * tangent - fn * normal;
-  // MercuryDPM: towards i of a pair, away from it of a wall, and the tangent likewise.
-  const Vec3 outwards = c.point - s.grains[static_cast<std::size_t>(c.i)].position;
-  const Vec3 near = outwards + dem::shift_to(s.cell, dem::nearest_image(s.cell, outwards));
-  return (near.dot(normal) < 0 ? 1 : -1) * (fn * normal + ft * tangent);
 }
 
 }  // namespace grainfield::coupling

@@ -26,6 +26,9 @@ inline ColumnTriple find_triple(const TableColumns& columns, const std::string& 
 struct Assembly::ContactColumns {
   ForeignColumn i, j, wall, friction, spring, sliding, fn, ft;
   CopyColumns copies;
+  std::array<ColumnTriple, 2> line;  ///< the places of both bodies
+  bool by_line = false;              ///< these tell the bodies
+  bool of_meshes = false;            ///< and the ids are of something else
   ColumnTriple force, normal_part, tangential_part, point, normal, springs, tangent;
   /// Beside the whole force: what its parts are said to be.
   ForeignColumn told_fn, told_ft;

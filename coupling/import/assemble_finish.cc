@@ -12,6 +12,8 @@
 namespace grainfield::coupling {
 namespace {
 
+constexpr double kManyOblique = 0.1;  // of the forces that are told in parts
+
 using dem::Vec3;
 
 // Cosine, see assemble_pairs.cc.
@@ -99,6 +101,18 @@ void Assembly::tell_tally() {
   out_.forceless = std::count_if(contacts_.begin(), contacts_.end(),
                                  [](const ContactRow& row) { return row.contact.force.isZero(0); });
   tell_sizes();
+  if (tally_.fn_below > 1 && kManyOfOneSign * tally_.fn_above < tally_.fn_below)
+    out_.warnings.push_back(
+        fmt::format("fn is below 0 in {} of {} contacts, which pulls: where compression is "
+                    "negative, change the "
+                    "sign of the column (--flip-forces turns ftx ... too)",
+                    tally_.fn_below, tally_.fn_above + tally_.fn_below));
+  if (tally_.oblique > 1 &&
+      kManyOblique * static_cast<double>(tally_.parts) < static_cast<double>(tally_.oblique))
+    out_.warnings.push_back(fmt::format(
+        "{} of {} tangential parts are not across the normal part of their force: are fnx ... and "
+        "ftx ... its parts, with the signs of their components?",
+        tally_.oblique, tally_.parts));
   if (tally_.off_surface > 0)
     out_.warnings.push_back(fmt::format(
         "{} of {} contact points lie farther than half a radius off the surfaces of their grains "
@@ -111,12 +125,14 @@ void Assembly::tell_tally() {
         "other?",
         tally_.off_shape, tally_.shaped, tally_.first_off_shape));
   if (tally_.ft_above > 1 && tally_.ft_below == 0)
-    (tally_.ft_above >= kManyOfOneSign ? out_.warnings : out_.notes).push_back(fmt::format(
-        "none of {} values of ft is below 0, and no tx, ty tell directions: where ft is a size, "
-        "all "
-        "tangential forces are turned one way (its sign is that along the normal turned to the "
-        "left)",
-        tally_.ft_above));
+    (tally_.ft_above >= kManyOfOneSign ? out_.warnings : out_.notes)
+        .push_back(fmt::format(
+            "none of {} values of ft is below 0, and no tx, ty tell directions: where ft is a "
+            "size, "
+            "all "
+            "tangential forces are turned one way (its sign is that along the normal turned to the "
+            "left)",
+            tally_.ft_above));
   if (tally_.below_digits > 0)
     out_.notes.push_back(fmt::format(
         "{} contacts bear a force across gaps that the {} digits of the places leave open: they "

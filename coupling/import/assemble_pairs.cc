@@ -31,6 +31,7 @@ constexpr double kAcrossNormal = 0.5;  // cosine of the angle to the wall's norm
 // is a deeper overlap.
 constexpr double kOffShape = 0.2;  // radii from a shape to a contact point, but for overlap
 constexpr double kWallGap = 0.01, kWallOverlap = 0.2;
+constexpr double kOffTwice = 0.05;  // of a distance, from twice the radii
 // Of the Coulomb limit: a contact this near to it slides.
 constexpr double kSliding = 1e-6;
 
@@ -297,10 +298,13 @@ bool Assembly::check_pair_distance(const ContactRow& row, bool has_point) {
                            : "--periodic AXIS=LOW:HIGH says where, --leave-out-distant imports "
                              "the packing without such contacts; or do the contacts count ids from "
                              "another number than the grains?";
+  const bool twice = std::abs(d - 2 * (a.radius + b.radius)) < kOffTwice * d;
   row.refuse(fmt::format(
-      "grains {} and {} of radius {:g} and {:g} m in contact at a distance of {:g} m: across a "
+      "grains {} and {} of radius {:g} and {:g} m in contact at a distance of {:g} m: {}across a "
       "periodic boundary? {}",
-      a.id, b.id, a.radius, b.radius, d, remedy));
+      a.id, b.id, a.radius, b.radius, d,
+      twice ? "twice their radii, do the diameters hold radii (--column radius=...)? Or " : "",
+      remedy));
 }
 
 void Assembly::add_contact(ContactRow row, bool has_normal, bool has_point, bool tell_sliding) {

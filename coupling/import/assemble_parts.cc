@@ -20,6 +20,21 @@ using dem::Vec3;
 // Between a force's part and what a column says of its size: what three digits leave.
 constexpr double kSameSize = 1e-2;
 
+// Of a force that lies along its normal: what few digits leave.
+constexpr double kAlong = 1e-3;
+
+// Cosine of the angle between the parts of a force, normal and tangential: few digits leave less.
+constexpr double kOblique = 0.1;
+constexpr double kNoPart = 1e-6;  // of the other part: rounding, whose direction is any
+
+// "T_x" and "T_y", "c_p[4]" and "c_p[5]": names that differ in one letter, the next axis or number.
+bool follows(const std::string& name, const std::string& next) {
+  if (name.size() != next.size()) return false;
+  const auto [at, other] = std::mismatch(name.begin(), name.end(), next.begin());
+  return at != name.end() && std::equal(at + 1, name.end(), other + 1) && *other == *at + 1 &&
+         std::string_view("xyXY012345678").find(*at) != std::string_view::npos;
+}
+
 // Plain names of a vector's components beside fx, fy, fz: "fxt", "ft1", "shearx", LAMMPS' "p1".
 bool is_tangential_component(const std::string& plain) {
   const auto is_axis = [](char c) {
@@ -113,8 +128,62 @@ void Assembly::find_parts_beside(const ForeignTable& table, const TableColumns& 
       fmt::join(parts, ","), c.force.z ? "fx,fy,fz" : "fx,fy", whole, theirs(c.force.x)));
 }
 
+void Assembly::VectorBeside::add(const ForeignRow& row, const Vec3& force) {
+  Vec3 vector = Vec3::Zero();
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    vector[static_cast<Eigen::Index>(k)] =
+        dem::parse_number(std::string(row.text(columns[k]))).value_or(0);
+  const double length = vector.norm();
+  if (!(length > 0) || force.isZero(0)) return;
+  ++rows;
+  unit += std::abs(length - 1) < kSameSize;
+  across += std::abs(vector.dot(force)) <= kSameSize * length * force.norm();
+}
+
+void Assembly::find_vectors_beside(const ForeignTable& table, const TableColumns& columns,
+                                   const ContactColumns& c) {
+  beside_.clear();
+  tally_.bearing = tally_.along = 0;
+  if (!table.any_names || !c.force || c.told_normal) return;
+  const std::vector<std::string> names = columns.untaken();
+  const std::size_t dim = c.force.z ? 3 : 2;
+  for (std::size_t k = 0; k + dim <= names.size(); ++k) {
+    bool vector = plain_untaken_name(table, names[k]).find("torque") == std::string::npos;
+    for (std::size_t d = 1; d < dim; ++d)
+      vector = vector && follows(names[k + d - 1], names[k + d]);
+    if (!vector) continue;
+    VectorBeside one;
+    for (std::size_t d = 0; d < dim; ++d) {
+      one.names.push_back(names[k + d]);
+      one.columns.push_back(columns.peek_theirs(names[k + d]));
+    }
+    beside_.push_back(std::move(one));
+    k += dim - 1;
+  }
+  // A spring is a part of the force.
+  if (c.springs)
+    beside_.push_back({{c.springs.x.name, c.springs.y.name, c.springs.z.name},
+                       {c.springs.x, c.springs.y, c.springs.z}});
+}
+
+void Assembly::tell_vectors_beside(const ForeignTable& table, const ContactColumns& c) {
+  if (tally_.bearing == 0 || tally_.along < tally_.bearing) return;
+  for (const VectorBeside& one : beside_) {
+    if (one.rows == 0 || one.across < one.rows || one.unit == one.rows) continue;
+    const std::string all = fmt::format("{}", fmt::join(one.names, ","));
+    out_.warnings.push_back(fmt::format(
+        "{}:{}: all forces between grains lie along the normals, and {} across them: are {} the "
+        "normal part alone (--column fnx,fny,fnz=... --column ftx,fty,ftz={})?",
+        table.file, table.header_line, all, c.force.x.name + " ...", all));
+  }
+}
+
 void Assembly::check_sizes(const ContactRow& row) {
   const dem::Contact& c = row.contact;
+  if (c.j >= 0 && !c.force.isZero(0)) {
+    ++tally_.bearing;
+    tally_.along += std::abs(c.tangential_force) <= kAlong * c.force.norm();
+  }
   // Where a mesh is imported as a flat wall the directions are others.
   if (c.j < 0 || (!row.told_fn && !row.told_ft)) return;
   ++tally_.sized;
@@ -163,6 +232,21 @@ void Assembly::check_parts(const ContactColumns& columns, const ForeignRow& row)
                   "... and ftx ..., allowed: those that agree; --column fx,fy,fz=... or --column "
                   "fnx,fny,fnz=... says which count",
                   whole.x(), whole.y(), whole.z(), sum.x(), sum.y(), sum.z()));
+}
+
+void Assembly::count_parts(const ContactColumns& columns, const ForeignRow& row) {
+  if (columns.normal_part) {
+    const Vec3 fn = columns.normal_part.of(row), ft = columns.tangential_part.of(row);
+    const double size = fn.norm() * ft.norm();
+    const bool both = ft.norm() > kNoPart * fn.norm() && fn.norm() > kNoPart * ft.norm();
+    tally_.parts += both;
+    tally_.oblique += both && std::abs(fn.dot(ft)) > kOblique * size;
+  }
+  if (columns.fn && columns.tangential_part) {
+    const double fn = row.number(columns.fn);
+    tally_.fn_above += fn > 0;
+    tally_.fn_below += fn < 0;
+  }
 }
 
 }  // namespace grainfield::coupling

@@ -244,6 +244,9 @@ void Assembly::refuse_twice(const ContactRow& row, const ContactRow& other, bool
         "need contact points",
         width);
   }
+  if (why.empty())
+    why = same_force ? ", with the same force: leave one of them out"
+                     : ", with another force: of two parts of one force write the sum";
   row.refuse(fmt::format("the contact of grains {} and {} is there already, at {}{}", i, j,
                          other.source.where(), why));
 }

@@ -250,9 +250,7 @@ void Assembly::add_grains(const ForeignTable& table) {
     }
     const bool has_mass = !row.empty(mass);
     g.mass = value(mass);
-    r.density = has_mass              ? 0
-                : !row.empty(density) ? row.number(density)
-                                      : options_.density;
+    r.density = has_mass ? 0 : !row.empty(density) ? row.number(density) : options_.density;
     r.sphere_density =
         !has_mass && format_.densities_of_spheres && (places.place[2] || !format_.rows_are_ids);
     if (has_mass && !row.empty(density)) r.told_density = row.number(density);

@@ -63,15 +63,24 @@ dem::Vec3 outwards(const dem::Snapshot& s, const dem::Contact& c) {
 // Counts the contacts that pull, as they are and with one component of all forces turned.
 void count_pulling(const dem::Snapshot& s, double mean_force, PackingCheck& check) {
   for (const dem::Contact& c : s.contacts) {
-    const dem::Vec3 parts = c.force.cwiseProduct(outwards(s, c).normalized());
-    const double along = parts.sum(), least = kPulling * mean_force;
+    const dem::Vec3 normal = outwards(s, c).normalized();
+    const double along = c.force.dot(normal), least = kPulling * mean_force;
     const bool bears = std::fabs(along) > least, pulls = along > least;
     check.bearing += bears;
     check.pulling += pulls;
     check.bearing_walls += bears && c.j < 0;
     check.pulling_walls += pulls && c.j < 0;
-    for (int axis = 0; axis < 3; ++axis)
-      check.pulling_turned[static_cast<std::size_t>(axis)] += along - 2 * parts[axis] > least;
+    for (std::size_t k = 0; k < kAxesChanges.size(); ++k) {
+      const auto& [text, from, sign] = kAxesChanges[k];
+      // In the plane nothing is exchanged with z.
+      const bool flat = s.dim == 2 && from[2] != 2;
+      double changed = 0;
+      for (Eigen::Index axis = 0; axis < 3; ++axis)
+        changed += sign[static_cast<std::size_t>(axis)] *
+                   c.force[from[static_cast<std::size_t>(axis)]] * normal[axis];
+      check.pulling_changed[k] += changed > least;
+      check.pushing_changed[k] += !flat && changed < -least;
+    }
   }
 }
 
@@ -99,6 +108,10 @@ PackingCheck check_packing(const dem::Snapshot& s) {
     if (c.j >= 0) add(sum, c.j, c.point - dem::second_place(s, c), -c.force);
     if (c.j >= 0) check_contact_normal(s, c, check);
     check_coulomb_limit(c, check);
+    if (c.j >= 0 && !c.force.isZero(0)) {
+      ++check.loaded_pairs;
+      check.pairs_along += std::fabs(c.tangential_force) <= kBeyondFriction * c.force.norm();
+    }
     force += c.force.norm() / static_cast<double>(s.contacts.size());
     if (free(c.i) && !free(c.j)) support += c.force;
     if (c.j < 0) {

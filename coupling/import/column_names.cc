@@ -43,6 +43,18 @@ std::vector<std::string> all_our_names() {
   return names;
 }
 
+// Whether both of ours are columns of grains, or of contacts, or of walls.
+bool in_one_table(const std::string& one, const std::string& other) {
+  for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls}) {
+    const auto has = [&](const std::string& name) {
+      return std::any_of(our_columns(kind).begin(), our_columns(kind).end(),
+                         [&](const OurColumn& column) { return column.name == name; });
+    };
+    if (has(one) && has(other)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 ColumnNames::ColumnNames(std::vector<std::pair<std::string, std::string>> format)
@@ -79,6 +91,21 @@ bool ColumnNames::claims(const std::string& theirs) const {
   const auto names = [&](const auto& pair) { return pair.second == theirs; };
   return std::any_of(chosen_.begin(), chosen_.end(), names) ||
          std::any_of(format_.begin(), format_.end(), names);
+}
+
+bool ColumnNames::is_taken_for_another(const std::string& ours, const std::string& theirs,
+                                       bool of_format) const {
+  // A spring is a part of the force: the column of a tangential force may be both.
+  const auto is_spring = [](const std::string& name) {
+    return name == "spring" || name == "sx" || name == "sy" || name == "sz";
+  };
+  const auto elsewhere = [&](const auto& pair) {
+    return pair.second == theirs && pair.first != ours && in_one_table(pair.first, ours) &&
+           !is_spring(pair.first);
+  };
+  return std::any_of(chosen_.begin(), chosen_.end(), elsewhere) ||
+         (of_format && std::any_of(format_.begin(), format_.end(),
+                                   [&](const auto& pair) { return pair.second == theirs; }));
 }
 
 void ColumnNames::mark_taken(const std::string& file, const std::string& ours,

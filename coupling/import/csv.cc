@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "coupling/import/foreign_kind.h"
 #include "coupling/import/format.h"
 #include "coupling/import/number_signs.h"
 #include "coupling/import/row_text.h"
@@ -131,6 +132,10 @@ char separator_of(const Head& head) {
   std::size_t parts = 1;
   for (const HeadLine& line : head.lines) {
     if (line.comment) continue;
+    // Rows of numbers without any names.
+    if (values_of(line, ' ').size() > 1 && is_row(values_of(line, ' '), ' ') &&
+        line.text.find_first_of(",;\t|") == std::string::npos)
+      return ' ';
     for (const char separator : {',', ';', '\t', '|'}) {
       if (values_of(line, separator).size() <= parts) continue;
       parts = values_of(line, separator).size();
@@ -148,26 +153,10 @@ char separator_of(const Head& head) {
 
 // Throws where the first line is that of another format.
 void refuse_other_formats(const std::string& file, const HeadLine& first) {
-  const std::string_view text = trimmed(first.text);
-  struct Beginning {
-    std::string_view text;
-    bool comment;
-    const char* what;
-  };
-  for (const Beginning& other : std::initializer_list<Beginning>{
-           {"ITEM:", false, "a dump of LAMMPS or LIGGGHTS: --from lammps, --from liggghts"},
-           {"vtk DataFile", true, "a file of VTK: --from vtk"},
-           {"<?xml", false, "a file of XML: --from vtk reads those of VTK"},
-           {"<VTKFile", false, "a file of VTK: --from vtk"},
-           {"format ", true, "text of YADE: --from yade"},
-           {"<html", false, "a page of HTML: save the table as CSV"},
-           {"<!DOCTYPE", false, "a page of HTML: save the table as CSV"},
-           {"{", false, "JSON: write the tables as CSV"},
-           {"[", false, "JSON: write the tables as CSV"}})
-    if (first.comment == other.comment && text.starts_with(other.text) &&
-        (other.text.size() > 1 || text.find_first_of("])", 1) == std::string_view::npos))
-      throw std::invalid_argument(fmt::format("{}:{}: found \"{}\": this is {}", file, first.line,
-                                              text.substr(0, 40), other.what));
+  const std::string line = (first.comment ? "# " : "") + first.text;
+  if (const std::string kind = foreign_kind(line, "csv"); !kind.empty())
+    throw std::invalid_argument(fmt::format("{}:{}: found \"{}\": this is {}", file, first.line,
+                                            trimmed(first.text).substr(0, 40), kind));
 }
 
 class HeaderSearch {
@@ -310,6 +299,7 @@ ImportFormat csv_format() {
   format.name = "csv";
   format.summary = "tables of grains, contacts and walls with a line of names";
   format.scan = [](const std::string& file, ColumnNames&) {
+    if (auto states = scan_xyz(file)) return std::move(*states);
     return std::vector<ForeignTable>{scan_csv(file)};
   };
   for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "coupling/import/foreign_kind.h"
 #include "coupling/import/format.h"
 #include "dem/snapshot/limits.h"
 #include "dem/snapshot/number.h"
@@ -37,8 +38,13 @@ class DumpScan {
         truncated_ = lines_.where() + ": truncated: the file ends in the middle of a line";
         break;
       }
-      if (!line.starts_with("ITEM: ")) refuse_line(line);
-      if (!item(std::string(trimmed(line.substr(6))))) break;
+      line = trimmed(line);
+      if (!line.starts_with("ITEM:")) {
+        const std::string first(line);
+        if (found_.empty() && !open_ && pass_title()) continue;
+        refuse_line(first);
+      }
+      if (!item(std::string(trimmed(line.substr(5))))) break;
     }
     if (open_ && truncated_.empty())
       truncated_ =
@@ -58,14 +64,34 @@ class DumpScan {
     throw std::invalid_argument(fmt::format("{}: {}", lines_.where(), what));
   }
 
+  // Goes on to the first "ITEM: TIMESTEP", UNITS or TIME where only some lines of a title stand
+  // before it.
+  bool pass_title() {
+    constexpr int kTitle = 20;  // lines, at most
+    const Lines::Place back = lines_.place();
+    Lines::Place before = back;
+    std::string_view line;
+    for (int n = 0; n < kTitle && lines_.next(line); ++n) {
+      const std::string_view text = trimmed(line);
+      for (const char* begins : {"ITEM: TIMESTEP", "ITEM: UNITS", "ITEM: TIME"})
+        if (text.starts_with(begins)) {
+          lines_.seek(before);
+          return true;
+        }
+      if (text.starts_with("ITEM:")) break;
+      before = lines_.place();
+    }
+    lines_.seek(back);
+    return false;
+  }
+
   // A line between the steps that begins none.
   [[noreturn]] void refuse_line(std::string_view line) const {
-    const bool yaml = line == "---" || line.starts_with("creator:");
-    const bool vtk = line.starts_with("# vtk") || line.starts_with("<?xml");
+    const std::string kind = foreign_kind(line, "dump");
     refuse(fmt::format("found \"{}\", expected \"ITEM: ...\"; {}", line.substr(0, 60),
-                       yaml  ? "this is a dump of style yaml: write one of style custom or local"
-                       : vtk ? "this is a file of VTK: --from vtk reads those"
-                             : "is this a dump file?"));
+                       kind.empty() ? "is this a dump file? --from csv reads tables with a line of "
+                                      "names, and extended XYZ"
+                                    : "this is " + kind));
   }
 
   // False at the end of the file, which is then truncated.
@@ -75,6 +101,7 @@ class DumpScan {
     return false;
   }
 
+  static constexpr const char* kStep = "the number of the time step";
   bool whole(long long& value, const char* what) {
     std::string_view line;
     if (!next(line, what)) return false;
@@ -86,7 +113,10 @@ class DumpScan {
         number = static_cast<long long>(*real);
     }
     if (!number || *number < 0)
-      refuse(fmt::format("found \"{}\", expected {}", line.substr(0, 60), what));
+      refuse(fmt::format("found \"{}\", expected {}, a whole number{}", line.substr(0, 60), what,
+                         dem::parse_number(line) && what == kStep
+                             ? "; a time in s stands behind a line \"ITEM: TIME\""
+                             : ""));
     value = *number;
     return true;
   }
@@ -98,7 +128,7 @@ class DumpScan {
       table_.box.reset();
       rows_ = -1;
       table_.columns = std::make_shared<const std::vector<std::string>>();
-      if (!whole(step, "the number of the time step")) return false;
+      if (!whole(step, kStep)) return false;
       table_.step = step;
       open_ = true;
       return true;
@@ -160,7 +190,9 @@ class DumpScan {
       if (line.starts_with("ITEM:"))
         refuse(fmt::format("found \"{}\", expected three lines of box bounds", line.substr(0, 60)));
       split(line, ' ', fields);
-      bool good = fields.size() == wanted;
+      // Other writers call them: "0 1 xlo xhi".
+      const bool named = fields.size() == wanted + 2 && fields.back().ends_with("hi");
+      bool good = fields.size() == wanted || named;
       for (std::size_t k = 0; good && k < wanted; ++k) {
         const auto number = dem::parse_number(fields[k]);
         good = number && std::isfinite(*number);
@@ -217,7 +249,10 @@ class DumpScan {
     split(name, ' ', words);
     if (words.empty())
       refuse("found \"ITEM:\" without a name, expected ATOMS or ENTRIES behind it");
-    const std::vector<std::string> columns(words.begin() + 1, words.end());
+    std::vector<std::string> columns(words.begin() + 1, words.end());
+    // "id, x, y": a sign between the names is none of theirs.
+    for (std::string& column : columns)
+      if (column.size() > 1 && column.back() == ',') column.pop_back();
     if (!columns_ || *columns_ != columns)
       columns_ = std::make_shared<const std::vector<std::string>>(columns);
     table_.columns = columns_;
@@ -229,7 +264,8 @@ class DumpScan {
     for (long long n = 0; n < rows_; ++n) {
       bool there = lines_.next(line);
       while (there && trimmed(line).empty()) there = lines_.next(line);
-      if (there && !line.starts_with("ITEM:") && !(n + 1 == rows_ && lines_.unfinished())) continue;
+      if (there && !trimmed(line).starts_with("ITEM:") && !(n + 1 == rows_ && lines_.unfinished()))
+        continue;
       truncated_ = fmt::format(
           "{}: truncated: step {} has {} rows announced, {} there{}", lines_.where(), *table_.step,
           rows_, n, there && n + 1 == rows_ ? " (the last one ends without a line end)" : "");

@@ -1,6 +1,7 @@
 // A foreign format: how its tables are found and what its columns are called. A new format is one
 // file with a function that returns this, and one line in formats.cc.
 #pragma once
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,6 +51,10 @@ struct HeadWords {
 };
 /// The table of a CSV file, with the units of a row of units behind its names.
 ForeignTable scan_csv(const std::string& file, HeadWords&& known = {});
+
+/// Tables of a file of extended XYZ, one a state; nothing for any other file. Throws
+/// std::invalid_argument naming file and line.
+std::optional<std::vector<ForeignTable>> scan_xyz(const std::string& file);
 
 /// Tables of a LAMMPS or LIGGGHTS dump file.
 std::vector<ForeignTable> scan_dump(const std::string& file, ColumnNames&);

@@ -38,6 +38,13 @@ TableKind kind_of(const ForeignTable& table, ColumnNames& names) {
   return TableKind::grains;
 }
 
+// Whether a table of contacts tells its grains by their ids, not by their places alone.
+bool names_grains(const ForeignTable& table, ColumnNames& names) {
+  const TableColumns columns(table, names);
+  const bool line = columns.has("x1") && columns.has("x2");
+  return !line || columns.has("i") || columns.has("j") || columns.has("wall");
+}
+
 ForeignTable table_of(const ArrayTable& table, TableKind kind) {
   ForeignTable out;
   out.file = table.name;
@@ -289,11 +296,16 @@ void import_snapshots(const ImportOptions& options,
       return kind_of(table, names) == TableKind::grains;
     });
     const bool any = grains != tables.end();
-    named.push_back({options.files[k], any, [&, k, at = grains - tables.begin(), any] {
-                       return any ? read_keys(found[k][static_cast<std::size_t>(at)],
-                                              TableKind::grains)
-                                  : RowKeys{};
-                     }});
+    named.push_back(
+        {options.files[k], any,
+         [&, k, at = grains - tables.begin(), any] {
+           return any ? read_keys(found[k][static_cast<std::size_t>(at)], TableKind::grains)
+                      : RowKeys{};
+         },
+         [&, k, at = grains - tables.begin(), any] {
+           return any ? place_keys(found[k][static_cast<std::size_t>(at)], names, reader)
+                      : RowKeys{};
+         }});
   }
   const NamedSteps by_name = steps_of_names(named);
   for (std::size_t k = 0; k < found.size(); ++k)
@@ -316,7 +328,9 @@ void import_snapshots(const ImportOptions& options,
     steps.require_whole(choice.step, options);
     const StepTables& tables = steps.at(choice.step);
     Assembly assembly(options, format, names, reader);
-    assembly.expect_contacts(!tables.contacts.empty());
+    assembly.expect_contacts(
+        std::any_of(tables.contacts.begin(), tables.contacts.end(),
+                    [&](const ForeignTable& table) { return names_grains(table, names); }));
     for (const ForeignTable& table : tables.grains) assembly.add_grains(table);
     for (const ForeignTable& table : tables.walls) assembly.add_walls(table);
     assembly.settle();

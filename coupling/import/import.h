@@ -43,8 +43,8 @@ struct StepChoice {
 };
 
 struct ImportOptions {
-  std::string format;                ///< lammps | liggghts | yade | csv | mercury | vtk
-  std::vector<std::string> files;    ///< told apart by what they hold
+  std::string format;              ///< lammps | liggghts | yade | csv | mercury | vtk
+  std::vector<std::string> files;  ///< told apart by what they hold
   /// parse_unit_system: of columns without a unit of their own; "": m, and a file that says units
   /// that are none of SI is refused.
   std::string units;
@@ -117,6 +117,23 @@ struct ArrayTable {
 dem::Snapshot import_arrays(const ImportOptions& options, const ArrayTable& grains,
                             const ArrayTable& contacts, const ArrayTable& walls);
 
+/// What makes the forces fit the places where files differ in a sign or in the order of axes.
+struct AxesChange {
+  const char* text;
+  std::array<Eigen::Index, 3> from;  ///< x, y, z of the force are these of the file's
+  std::array<int, 3> sign;
+};
+inline constexpr std::array<AxesChange, 8> kAxesChanges{{
+    {"turn the sign of fx alone", {0, 1, 2}, {-1, 1, 1}},
+    {"turn the sign of fy alone", {0, 1, 2}, {1, -1, 1}},
+    {"turn the sign of fz alone", {0, 1, 2}, {1, 1, -1}},
+    {"exchange fx and fy (or x and y of the grains)", {1, 0, 2}, {1, 1, 1}},
+    {"exchange fy and fz (or y and z of the grains)", {0, 2, 1}, {1, 1, 1}},
+    {"exchange fx and fz (or x and z of the grains)", {2, 1, 0}, {1, 1, 1}},
+    {"take fy, fz, fx for fx, fy, fz", {1, 2, 0}, {1, 1, 1}},
+    {"take fz, fx, fy for fx, fy, fz", {2, 0, 1}, {1, 1, 1}},
+}};
+
 /// How an imported packing can be checked against the program that made it.
 struct PackingCheck {
   /// Sum over grains and their contacts of F (outer) x, x from the centroid to the contact point, N
@@ -137,13 +154,16 @@ struct PackingCheck {
   /// the sum of their squares along gravity, over the same weight.
   double support_error = std::numeric_limits<double>::quiet_NaN();
   /// Contacts whose force pulls: its part along the normal is tension, above a thousandth of the
-  /// mean force. `pulling_turned`: how many would with the sign of one component turned.
+  /// mean force. `pulling_changed`: how many would with each of kAxesChanges, and
+  /// `pushing_changed` how many would push.
   int pulling = 0;
-  std::array<int, 3> pulling_turned{};
+  std::array<int, kAxesChanges.size()> pulling_changed{}, pushing_changed{};
   int bearing = 0;  ///< contacts whose part along the normal, of either sign, is above it
   int pulling_walls = 0, bearing_walls = 0;  ///< of these, those with walls
   /// Pairs of unknown friction, and those of them that bear more tangential than normal force.
   int unknown_friction = 0, steep = 0;
+  int pairs_along = 0;        ///< pairs whose force lies along their normal
+  int loaded_pairs = 0;       ///< pairs that bear a force
   double weight = 0;          ///< of the free grains, with the applied force along gravity, N
   dem::Vec3 across{0, 0, 0};  ///< force of walls and fixed grains across gravity, N
   int wall_contacts = 0;      ///< contacts with walls

@@ -16,9 +16,9 @@ struct Sign {
 };
 // What typesetting, spreadsheets and DOS put in the place of blanks and of the minus of a number:
 // no-break and narrow blanks, a byte order mark of a file that was put behind another, Ctrl-Z.
-constexpr std::array kSigns{
-    Sign{"\xC2\xA0", "  "},      Sign{"\xE2\x80\xAF", "   "}, Sign{"\xE2\x80\x89", "   "},
-    Sign{"\xEF\xBB\xBF", "   "}, Sign{"\xE2\x88\x92", "  -"}, Sign{"\x1A", " "}};
+constexpr std::array kSigns{Sign{"\xC2\xA0", "  "},      Sign{"\xE2\x80\xAF", "   "},
+                            Sign{"\xE2\x80\x89", "   "}, Sign{"\xEF\xBB\xBF", "   "},
+                            Sign{"\xE2\x88\x92", "  -"}, Sign{"\x1A", " "}};
 
 }  // namespace
 
@@ -108,8 +108,16 @@ void split(std::string_view line, char separator, std::vector<std::string_view>&
   while (true) {
     if (white) at = std::min(line.find_first_not_of(" \t", at), line.size());
     if (white && at == line.size()) return;
-    const std::size_t end =
+    std::size_t end =
         std::min(white ? line.find_first_of(" \t", at) : line.find(separator, at), line.size());
+    // "Particle Identifier" in quotation marks, between blanks.
+    if (white && line[at] == '"') {
+      const std::size_t close = line.find('"', at + 1);
+      const bool whole =
+          close != std::string_view::npos &&
+          (close + 1 == line.size() || line.find_first_of(" \t", close) == close + 1);
+      if (whole) end = close + 1;
+    }
     std::string_view part = trimmed(line.substr(at, end - at));
     if (part.size() >= 2 && part.front() == '"' && part.back() == '"')
       part = part.substr(1, part.size() - 2);

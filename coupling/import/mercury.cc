@@ -24,6 +24,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "coupling/import/foreign_kind.h"
 #include "coupling/import/format.h"
 #include "dem/snapshot/limits.h"
 #include "dem/snapshot/number.h"
@@ -61,8 +62,12 @@ class MercuryScan {
 
  private:
   [[noreturn]] void refuse(std::string_view line, const std::string& wanted) const {
-    throw std::invalid_argument(
-        fmt::format("{}: found \"{}\", expected {}", lines_.where(), line.substr(0, 60), wanted));
+    // The sign of a comment may be off already.
+    std::string kind = foreign_kind(line, "mercury");
+    if (kind.empty()) kind = foreign_kind(fmt::format("#{}", line), "mercury");
+    throw std::invalid_argument(fmt::format("{}: found \"{}\", expected {}{}", lines_.where(),
+                                            line.substr(0, 60), wanted,
+                                            kind.empty() ? "" : "; this is " + kind));
   }
 
   static std::shared_ptr<const Names> columns_of_contacts() {
@@ -80,6 +85,14 @@ class MercuryScan {
       out.push_back(*number);
     }
     return out;
+  }
+
+  // Programs write columns of their own behind those of MercuryDPM.
+  static std::shared_ptr<const Names> with_more(Names names, std::string_view row) {
+    std::vector<std::string_view> words;
+    split(trimmed(row), ' ', words);
+    while (names.size() < words.size()) names.push_back(fmt::format("column {}", names.size() + 1));
+    return std::make_shared<const Names>(std::move(names));
   }
 
   // False where the file ends within the rows.
@@ -103,13 +116,16 @@ class MercuryScan {
     table_.rows = static_cast<long long>(head[0]);
     std::string_view row;
     long long n = 0;
-    for (; n < table_.rows && lines_.next(row); ++n)
+    for (; n < table_.rows && lines_.next(row); ++n) {
       while (trimmed(row).empty() && lines_.next(row)) {
       }
+      if (n == 0) table_.columns = with_more(*table_.columns, row);
+    }
     const bool whole = n == table_.rows && !(lines_.unfinished() && n > 0);
     if (!whole)
-      table_.broken = fmt::format("{}: truncated: time {} has {} particles announced, {} there",
-                                  lines_.where(), head[1], table_.rows, n);
+      table_.broken = fmt::format(
+          "{}: truncated: time {} has {} particles announced, {} there{}", lines_.where(), head[1],
+          table_.rows, n, n == table_.rows ? ", the last one without the end of its line" : "");
     found_.push_back(table_);
     return whole;
   }

@@ -62,6 +62,12 @@ const std::vector<OurColumn>& our_columns(TableKind kind) {
       {"i", "1", "id of a grain"},
       {"j", "1", "id of the other grain, or name of a wall"},
       {"wall", "1", "instead of j: name or id of a wall, needed if walls and grains share ids"},
+      {"x1", "m", "instead of i, j: centre of the first grain, or a point of the wall"},
+      {"y1", "m", "as x1"},
+      {"z1", "m", "as x1; 3D"},
+      {"x2", "m", "of the second"},
+      {"y2", "m", "of the second"},
+      {"z2", "m", "of the second; 3D"},
       {"px", "m",
        "contact point; default: on the line of centres, in the middle of the overlap; at a wall "
        "the centre's foot on it"},

@@ -19,6 +19,7 @@ constexpr double kManyPull = 0.01;                        // of the contacts
 constexpr double kMostPull = 0.9;  // of those between grains, or with walls: their signs are turned
 constexpr double kManySteep = 0.1;  // of the pairs, with more tangential than normal force
 constexpr int kFewSteep = 2;
+constexpr int kFewPairs = 3;   // too few to tell that there is no friction
 constexpr int kExplains = 10;  // a turned sign is the cause where it leaves a tenth of the pulls
 constexpr double kOtherUnits = 0.02;  // of the weight: less is no matter of some missing contacts
 constexpr double kLeastDensity = 10, kMostDensity = 30000;    // kg/m3, kg/m2
@@ -28,10 +29,12 @@ constexpr double kLeastInertia = 1e-4, kMostInertia = 2;
 
 std::string unbalanced(const PackingCheck& check) {
   if (!(check.unbalanced_force_ratio > kUnbalanced)) return "";
+  const bool along = check.loaded_pairs >= kFewPairs && check.pairs_along == check.loaded_pairs;
   return fmt::format(
       "unbalanced force ratio {:.3g}, above {:g}: not at rest, or contacts with walls or gravity "
-      "are missing",
-      check.unbalanced_force_ratio, kUnbalanced);
+      "are missing{}",
+      check.unbalanced_force_ratio, kUnbalanced,
+      along ? "; the forces between grains have no tangential part: is it in other columns?" : "");
 }
 
 std::string unsupported(const PackingCheck& check) {
@@ -69,11 +72,14 @@ std::string unsupported(const PackingCheck& check) {
                      error, why);
 }
 
-// The component whose sign, turned in all forces, is why contacts pull: "fx"; empty: none is.
-std::string turned_component(const PackingCheck& check) {
-  const auto least = std::min_element(check.pulling_turned.begin(), check.pulling_turned.end());
-  if (kExplains * *least > check.pulling || *least >= check.bearing - check.pulling) return "";
-  return fmt::format("f{}", "xyz"[least - check.pulling_turned.begin()]);
+// What of kAxesChanges is why contacts pull, and what it leaves; empty: none is.
+std::string axes_remedy(const PackingCheck& check) {
+  const auto most = std::max_element(check.pushing_changed.begin(), check.pushing_changed.end());
+  const int left = check.bearing - *most;
+  if (kExplains * left > check.pulling || left >= check.bearing - check.pulling) return "";
+  const auto k = static_cast<std::size_t>(most - check.pushing_changed.begin());
+  return fmt::format("{}, which leaves {} that pull", kAxesChanges[k].text,
+                     check.pulling_changed[k]);
 }
 
 // Whether the forces between grains alone, or those with walls alone, have the other sign.
@@ -89,8 +95,7 @@ std::string turned_pairs_or_walls(const PackingCheck& check) {
                         push_together(check.pulling_walls, check.bearing_walls);
   const bool of_walls = pull_together(check.pulling_walls, check.bearing_walls) &&
                         push_together(pulling_pairs, pairs);
-  if (of_pairs == of_walls || check.bearing_walls == 0 || pairs == 0 ||
-      !turned_component(check).empty())
+  if (of_pairs == of_walls || check.bearing_walls == 0 || pairs == 0 || !axes_remedy(check).empty())
     return "";
   return fmt::format(
       "{} of {} contacts {} pull, {} of {} {} push: forces count on grain i, by j or the wall; "
@@ -102,21 +107,6 @@ std::string turned_pairs_or_walls(const PackingCheck& check) {
       of_pairs ? "between grains" : "with walls", of_pairs ? "pairs" : "walls");
 }
 
-std::string pulling(const PackingCheck& check) {
-  if (std::string text = turned_pairs_or_walls(check); !text.empty()) return text;
-  if (!(check.pulling > kManyPull * check.bearing)) return "";
-  const std::string component = turned_component(check);
-  return fmt::format(
-      "{} of {} contacts ({:.0f} %) pull, their normal force is tension: {}", check.pulling,
-      check.bearing, 100.0 * check.pulling / check.bearing,
-      component.empty()
-          ? "turn the sign of their forces, unless the grains stick together (cohesion, liquid "
-            "bridges)"
-          : fmt::format(
-                "turn the sign of {} alone, which leaves {} that pull", component,
-                *std::min_element(check.pulling_turned.begin(), check.pulling_turned.end())));
-}
-
 // Where friction is unknown: places, ids and axes that do not belong to the forces.
 std::string steep_forces(const PackingCheck& check) {
   if (check.steep < kFewSteep || !(check.steep > kManySteep * check.unknown_friction)) return "";
@@ -124,6 +114,20 @@ std::string steep_forces(const PackingCheck& check) {
       "{} of {} contacts between grains bear more tangential than normal force (friction above 1): "
       "do ids, axes and signs of forces fit the places?",
       check.steep, check.unknown_friction);
+}
+
+std::string pulling(const PackingCheck& check) {
+  if (std::string text = turned_pairs_or_walls(check); !text.empty()) return text;
+  if (!(check.pulling > kManyPull * check.bearing)) return "";
+  const std::string axes = axes_remedy(check);
+  return fmt::format(
+      "{} of {} contacts ({:.0f} %) pull, their normal force is tension: {}", check.pulling,
+      check.bearing, 100.0 * check.pulling / check.bearing,
+      !axes.empty() ? axes
+      : !steep_forces(check).empty()
+          ? "do ids, axes and signs of forces fit the places, or do the grains stick together?"
+          : "turn the sign of their forces, unless the grains stick together (cohesion, liquid "
+            "bridges)");
 }
 
 std::string off_walls(const PackingCheck& check) {
@@ -191,12 +195,12 @@ std::string tension_in(const PackingCheck& check) {
   if (!(along > 0) && !(mean > 0)) return "";
   const bool by_gravity = along > 0;
   const std::string remedy = "forces count on grain i, by j; turn their sign";
-  if (const std::string component = turned_component(check); by_gravity && !component.empty()) {
+  if (const std::string axes = axes_remedy(check); !axes.empty())
     return fmt::format(
-        "the contacts pull: stress along gravity is tension ({:.3g} N m over all contacts, "
-        "compression is negative), {} of {} contacts pull; turn the sign of {} alone",
-        along, check.pulling, check.bearing, component);
-  }
+        "the contacts pull: the stress{} is tension ({:.3g} N m over all contacts, compression is "
+        "negative), {} of {} contacts pull; {}",
+        by_gravity ? " along gravity" : "", by_gravity ? along : mean, check.pulling, check.bearing,
+        axes);
   if (by_gravity && check.walls_along_gravity < 0)
     return fmt::format(
         "contacts between grains pull (stress along gravity is tension, {:.3g} N m), those with "

@@ -1,6 +1,9 @@
 #include "coupling/import/row_keys.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <stdexcept>
 #include <utility>
@@ -30,6 +33,32 @@ RowKeys row_keys(const ForeignTable& table, TableKind kind, ColumnNames& names,
         first += ' ' + second;
       }
       out.push_back(std::move(first));
+    });
+  } catch (const std::invalid_argument&) {
+    return {};  // what is wrong is told where the table is imported
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+RowKeys place_keys(const ForeignTable& table, ColumnNames& names, TableReader& reader) {
+  constexpr double kSide = 3;  // mean diameters
+  RowKeys out;
+  if (!table.broken.empty()) return out;
+  try {
+    const TableColumns columns(table, names);
+    const ForeignColumn x = columns.need("x"), y = columns.need("y"), z = columns.find("z");
+    const bool by_radius = columns.has("radius");
+    const ForeignColumn size = columns.need(by_radius ? "radius" : "diameter");
+    double sum = 0;
+    reader.read(table, [&](const ForeignRow& row) { sum += row.number(size); });
+    const double side = kSide * (by_radius ? 2 : 1) * sum / static_cast<double>(table.rows);
+    const auto step = [&](const ForeignRow& row, const ForeignColumn& of) {
+      return of ? std::floor(row.number(of) / side) : 0;
+    };
+    reader.read(table, [&](const ForeignRow& row) {
+      out.push_back(fmt::format("{} {} {}", step(row, x), step(row, y), step(row, z)));
     });
   } catch (const std::invalid_argument&) {
     return {};  // what is wrong is told where the table is imported

@@ -15,6 +15,9 @@ using RowKeys = std::vector<std::string>;
 RowKeys row_keys(const ForeignTable& table, TableKind kind, ColumnNames& names,
                  TableReader& reader);
 
+/// Which cubes of three mean diameters the grains of a table lie in, as row_keys().
+RowKeys place_keys(const ForeignTable& table, ColumnNames& names, TableReader& reader);
+
 /// Whether two tables have nearly all rows of their own: less than half of the smaller one are in
 /// the other. False where one is empty.
 bool are_apart(const RowKeys& a, const RowKeys& b);

@@ -140,13 +140,16 @@ class StepsOfNames {
                       "files whose names differ in one",
                       first, last));
     kind.place = places.front();
-    const bool known = !keys_of(kind.files.front()).empty();
-    if (kind.grains && !known)
+    if (!kind.grains || !keys_of(kind.files.front()).empty()) return;
+    const NamedFile &one = files_[kind.files.front()], &other = files_[kind.files.back()];
+    if (one.places && other.places && are_apart(one.places(), other.places()))
+      out_.warnings.push_back(fmt::format(
+          "{} to {}: the numbers in their names are taken as steps, but their grains lie apart and "
+          "have no ids: pieces of one step belong into one file (ParaView: Append Datasets)",
+          first, last));
+    else
       out_.notes.push_back(
-          fmt::format("{} to {}: the numbers in their names are taken as steps (without ids "
-                      "nothing tells steps "
-                      "from pieces of several processors)",
-                      first, last));
+          fmt::format("{} to {}: the numbers in their names are taken as steps", first, last));
   }
 
   // A name without others of its words goes by those of as many numbers.

@@ -14,8 +14,9 @@ namespace grainfield::coupling {
 /// What a file holds, as far as it tells whether files are pieces of one step.
 struct NamedFile {
   std::string name;
-  bool grains = true;                  ///< or contacts
-  std::function<RowKeys()> keys = {};  ///< read where they are needed; empty ones: unknown
+  bool grains = true;                    ///< or contacts
+  std::function<RowKeys()> keys = {};    ///< read where they are needed; empty ones: unknown
+  std::function<RowKeys()> places = {};  ///< instead of ids, where grains have none
 };
 struct NamedSteps {
   std::vector<std::optional<long long>> steps;  ///< of each file

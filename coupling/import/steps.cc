@@ -27,6 +27,12 @@ std::string list_of(const std::vector<long long>& all) {
                      all.size());
 }
 
+// None, or of an emptied box.
+bool hold_no_row(const std::vector<ForeignTable>& tables) {
+  return std::all_of(tables.begin(), tables.end(),
+                     [](const ForeignTable& table) { return table.rows == 0; });
+}
+
 }  // namespace
 
 void StepList::share_names(ForeignTable& table) {
@@ -144,6 +150,7 @@ void StepList::settle(bool by_time, const ReadKeys& read_keys) {
       continue;
     }
     stepped_ = stepped_ || table.step.has_value();
+    if (!table.step && without_step_.empty()) without_step_ = table.file;
     StepTables& tables = steps_[table.step.value_or(0)];
     const bool contacts = entry.kind == TableKind::contacts;
     if (contacts && std::find(contact_kinds_.begin(), contact_kinds_.end(), table.columns.get()) ==
@@ -275,7 +282,8 @@ bool StepList::has_all_parts(const std::vector<ForeignTable>& tables, TableKind 
 
 bool StepList::is_whole(const StepTables& tables, bool without_contacts) const {
   const auto good = [](const ForeignTable& table) { return table.broken.empty(); };
-  if (tables.grains.empty() || !std::all_of(tables.grains.begin(), tables.grains.end(), good) ||
+  if (hold_no_row(tables.grains) ||
+      !std::all_of(tables.grains.begin(), tables.grains.end(), good) ||
       !std::all_of(tables.contacts.begin(), tables.contacts.end(), good) ||
       !has_all_parts(tables.grains, TableKind::grains))
     return false;
@@ -339,18 +347,32 @@ void StepList::require_whole(long long step, const ImportOptions& options) const
       if (!table.broken.empty()) throw std::invalid_argument(table.broken + others);
   const std::string which = stepped_ ? fmt::format(" of step {}", step) : "";
   const std::string files = fmt::format("{}", fmt::join(options.files, ", "));
-  if (tables.grains.empty())
-    throw std::invalid_argument(fmt::format("no table of grains{} in {}{}", which, files, others));
-  if (!has_all_parts(tables.grains, TableKind::grains))
-    throw std::invalid_argument(
-        fmt::format("not all tables of grains{} in {}{}", which, files, others));
-  if (!tables.contacts.empty() && options.without_contacts) return;
   const auto steps_with = [&](bool grains) {
     std::vector<long long> out;
     for (const auto& [number, all] : steps_)
       if (!(grains ? all.grains : all.contacts).empty()) out.push_back(number);
     return out;
   };
+  const std::string there =
+      stepped_ && whole.empty()
+          ? fmt::format("; grains are there of the steps {}, contacts of {}{}",
+                        list_of(steps_with(true)), list_of(steps_with(false)),
+                        without_step_.empty() ? ""
+                                              : fmt::format("; {} tells no step and counts as "
+                                                            "step 0: give the grains of its "
+                                                            "state alone",
+                                                            without_step_))
+          : others;
+  if (tables.grains.empty())
+    throw std::invalid_argument(fmt::format("no table of grains{} in {}{}", which, files, there));
+  if (hold_no_row(tables.grains))
+    throw std::invalid_argument(
+        fmt::format("{}: the tables of grains{} hold no row, expected one of each grain{}",
+                    tables.grains.front().file, which, others));
+  if (!has_all_parts(tables.grains, TableKind::grains))
+    throw std::invalid_argument(
+        fmt::format("not all tables of grains{} in {}{}", which, files, others));
+  if (!tables.contacts.empty() && options.without_contacts) return;
   if (contact_kinds_.empty())
     throw std::invalid_argument(
         fmt::format("no table of contacts in {}: give its file, too (a table is one of contacts by "
@@ -363,11 +385,7 @@ void StepList::require_whole(long long step, const ImportOptions& options) const
     throw std::invalid_argument(
         fmt::format("not all tables of contacts{} in {}{}", which, files, others));
   }
-  throw std::invalid_argument(
-      fmt::format("no table of contacts{} in {}{}", which, files,
-                  whole.empty() ? fmt::format("; grains are there of the steps {}, contacts of {}",
-                                              list_of(steps_with(true)), list_of(steps_with(false)))
-                                : others));
+  throw std::invalid_argument(fmt::format("no table of contacts{} in {}{}", which, files, there));
 }
 
 std::vector<std::string> StepList::take_notes() { return std::exchange(notes_, {}); }

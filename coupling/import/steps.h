@@ -86,7 +86,8 @@ class StepList {
   Pieces pieces_of(const std::vector<ForeignTable>& tables) const;
   std::map<TableKind, Pieces> most_pieces_;
   bool stepped_ = false;
-  std::string broken_;  ///< the first table that is truncated
+  std::string without_step_;  // the first file that tells none
+  std::string broken_;        ///< the first table that is truncated
 };
 
 }  // namespace grainfield::coupling

@@ -21,7 +21,8 @@ const Synonyms& synonyms_of(const std::string& ours);
 std::string same_meaning(const std::string& ours, const std::vector<std::string>& columns);
 
 /// A plain name of one of the numbered components of a vector, counted from 0: where `all` has
-/// velocity1 and velocity2 and no velocity0, velocity1 is velocity0. Empty: of half a vector.
+/// velocity1 and velocity2 and no velocity0, velocity1 is velocity0. Empty: of half a vector. Names
+/// of the two bodies of a contact count from 1: beside id0, id1 is id2.
 std::string counted_from_zero(const std::string& plain, const std::vector<std::string>& all);
 
 /// Whether it is, plainly written, one of our names or a sure synonym of one.

@@ -33,6 +33,30 @@ bool is_component(const std::string& name) {
          std::isdigit(static_cast<unsigned char>(name[name.size() - (bracket ? 2 : 1)])) != 0;
 }
 
+// "c_rho" of a dump, whose first letters say what made it: "rho".
+std::string without_maker(const ForeignTable& table, const std::string& name) {
+  const bool made = table.prefixes && name.size() > 2 && name[1] == '_' &&
+                    std::string_view("cfvid").find(name[0]) != std::string_view::npos;
+  return made ? name.substr(2) : name;
+}
+
+// Whether the user or the format names a column of theirs as another of a table of the same kind.
+bool is_of_another(const ColumnNames& names, const std::string& ours, const std::string& theirs) {
+  for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls}) {
+    const std::vector<OurColumn>& columns = our_columns(kind);
+    const auto is_ours = [&](const OurColumn& column) { return column.name == ours; };
+    if (std::none_of(columns.begin(), columns.end(), is_ours)) continue;
+    for (const OurColumn& other : columns) {
+      const auto candidates = names.candidates(other.name);
+      if (other.name != ours &&
+          std::any_of(candidates.begin(), candidates.end(),
+                      [&](const auto& candidate) { return candidate.theirs == theirs; }))
+        return true;
+    }
+  }
+  return false;
+}
+
 const OurColumn* our_column(const std::string& name) {
   for (const TableKind kind : {TableKind::grains, TableKind::contacts, TableKind::walls})
     for (const OurColumn& column : our_columns(kind))
@@ -71,6 +95,21 @@ bool is_unit_of_others(std::string unit) {
         "kg/l",   "lb/ft3",     "lb/in3",      "pcf",     "in/s",  "ft/s"})
     if (unit == known) return true;
   return false;
+}
+
+// The unit of `kind` that is written like this but for capitals, "KN", "MM"; empty: none.
+std::string unit_in_other_case(const std::string& unit, const std::string& like) {
+  const auto lower = [](std::string text) {
+    for (char& ch : text) ch = static_cast<char>(std::tolower(static_cast<unsigned char>(ch)));
+    return text;
+  };
+  for (const char* known :
+       {"m",  "cm",    "mm",     "um",    "km",     "kg",  "g",    "mg",   "N",
+        "kN", "kg/m3", "kg/m^3", "g/cm3", "g/cm^3", "m/s", "mm/s", "cm/s", "rad/s",
+        "m3", "mm3",   "m2",     "mm2",   "kg/m2",  "N/m", "kN/m"})
+    if (lower(known) == lower(unit) && parse_unit(known)->kind == parse_unit(like)->kind)
+      return known;
+  return "";
 }
 
 }  // namespace
@@ -112,6 +151,10 @@ std::optional<Unit> TableColumns::unit_of(const std::string& ours, const Heading
   const std::optional<Unit> unit = parse_unit(heading.unit == "-" ? "1" : heading.unit);
   for (const std::string& allowed : {known->unit, known->plane_unit})
     if (unit && unit->kind == parse_unit(allowed)->kind) return unit;
+  std::string other_case;
+  for (const std::string& allowed : {known->plane_unit, known->unit})
+    if (const std::string found = unit_in_other_case(heading.unit, allowed); !found.empty())
+      other_case = found;
   // "id [#]": what is no unit belongs to the name of a number without one.
   if (!unit && known->unit == "1") return std::nullopt;
   throw std::invalid_argument(fmt::format(
@@ -122,7 +165,8 @@ std::optional<Unit> TableColumns::unit_of(const std::string& ours, const Heading
           : fmt::format("{}{} or another unit of that kind, of {}", known->unit,
                         known->plane_unit == known->unit ? "" : " (2D: " + known->plane_unit + ")",
                         known_symbols()),
-      unit ? ""
+      unit                  ? ""
+      : !other_case.empty() ? fmt::format("; did you mean \"{}\"? (capitals count)", other_case)
       : is_unit_of_others(heading.unit)
           ? "; convert the column"
           : fmt::format("; where it is no unit: --column '{}={}'", ours,
@@ -169,6 +213,15 @@ std::vector<std::string> TableColumns::untaken() const {
     if (!heading.name.empty() && taken_.find(heading.index) == taken_.end())
       out.push_back(heading.name);
   return out;
+}
+
+bool TableColumns::chose_of(const std::string& name) const {
+  const std::string stem = name.substr(0, name.find('['));
+  return stem.size() < name.size() &&
+         std::any_of(headings_.begin(), headings_.end(), [&](const Heading& heading) {
+           return heading.name.starts_with(stem + "[") && names_.claims(heading.name) &&
+                  taken_.find(heading.index) != taken_.end();
+         });
 }
 
 bool TableColumns::tells_units() const {
@@ -228,7 +281,7 @@ std::vector<Heading>::const_iterator TableColumns::plainly(const std::string& ou
   for (const Heading& heading : headings_) all.push_back(plain_column_name(heading.name));
   auto found = none;
   for (auto at = headings_.begin(); at != none; ++at) {
-    if (has_signs(at->name)) continue;
+    if (has_signs(at->name) || is_row_number(ours, *at)) continue;
     const std::string plain = counted_from_zero(plain_column_name(at->name), all);
     // The components of a vector: "v[0]" is a velocity's, "v0" may be anything.
     if (!is_in(wanted, plain) && !(is_component(at->name) && is_in(known.components, plain)))
@@ -237,11 +290,10 @@ std::vector<Heading>::const_iterator TableColumns::plainly(const std::string& ou
     const bool flag = ours == "ix" || ours == "iy" || ours == "iz";
     if (flag && at->name.front() == 'I') continue;
     // "v_x" of a dump is a variable's, not a velocity.
-    if (table_.prefixes && at->name.size() > 2 && at->name[1] == '_' &&
-        std::string_view("cfvid").find(at->name[0]) != std::string_view::npos)
-      continue;
-    if (names_.claims(at->name) ||
-        names_.claims(table_.columns->at(static_cast<std::size_t>(at->index))))
+    if (without_maker(table_, at->name) != at->name) continue;
+    if (names_.is_taken_for_another(ours, at->name, true) ||
+        names_.is_taken_for_another(ours, table_.columns->at(static_cast<std::size_t>(at->index)),
+                                    true))
       continue;
     if (found != none) return none;
     found = at;
@@ -253,6 +305,22 @@ std::vector<std::string> TableColumns::names() const {
   std::vector<std::string> out;
   for (const Heading& heading : headings_) out.push_back(heading.name);
   return out;
+}
+
+// "i,id1,id2,...": the number of the row, where other columns name both bodies and no j is there.
+bool TableColumns::is_row_number(const std::string& ours, const Heading& heading) const {
+  if (ours != "i" || !table_.any_names || plain_column_name(heading.name) != "i") return false;
+  const auto there = [&](const std::string& plain) {
+    return std::any_of(headings_.begin(), headings_.end(), [&](const Heading& other) {
+      return plain_column_name(other.name) == plain;
+    });
+  };
+  if (there("j")) return false;
+  // The names of the first body and of the second are in one order.
+  const std::vector<std::string>&first = synonyms_of("i").sure, &second = synonyms_of("j").sure;
+  for (std::size_t k = 0; k < std::min(first.size(), second.size()); ++k)
+    if (there(first[k]) && there(second[k])) return true;
+  return false;
 }
 
 bool TableColumns::has(const std::string& ours) const { return bool(look_up(ours)); }
@@ -270,7 +338,9 @@ ForeignColumn TableColumns::look_up(const std::string& ours) const {
       return heading.name == candidate.theirs ||
              columns[static_cast<std::size_t>(heading.index)] == candidate.theirs;
     };
+    if (!candidate.chosen && names_.is_taken_for_another(ours, candidate.theirs, false)) continue;
     const auto at = std::find_if(headings_.begin(), headings_.end(), is_theirs);
+    if (!candidate.chosen && at != headings_.end() && is_row_number(ours, *at)) continue;
     std::optional<double> constant;
     if (at == headings_.end() && candidate.chosen) constant = constant_of(ours, candidate.theirs);
     if (at == headings_.end() && !constant) continue;
@@ -298,16 +368,27 @@ ForeignColumn TableColumns::look_up(const std::string& ours) const {
 
 std::string TableColumns::suggestion(const std::string& ours) const {
   // What is another column of ours, or taken already, is not meant.
-  std::vector<std::string> left;
-  for (const Heading& heading : headings_)
-    if (!heading.name.empty() && taken_.find(heading.index) == taken_.end())
-      left.push_back((*table_.columns)[static_cast<std::size_t>(heading.index)]);
-  std::string nearest = same_meaning(ours, left);
+  std::vector<std::string> left, bare;
+  for (const Heading& heading : headings_) {
+    const std::string& whole = (*table_.columns)[static_cast<std::size_t>(heading.index)];
+    if (heading.name.empty() || taken_.find(heading.index) != taken_.end() ||
+        is_of_another(names_, ours, heading.name))
+      continue;
+    left.push_back(whole);
+    bare.push_back(without_maker(table_, whole));
+  }
+  // "c_rho" of a dump is called rho.
+  const auto meaning = [&](const std::string& what) {
+    const std::string found = same_meaning(what, bare);
+    const auto at = std::find(bare.begin(), bare.end(), found);
+    return found.empty() ? found : left[static_cast<std::size_t>(at - bare.begin())];
+  };
+  std::string nearest = meaning(ours);
   // What would do instead of ours, under its own name.
   for (const auto& [other, instead] :
        {std::pair<std::string, std::string>{"radius", "diameter"}, {"mass", "density"}}) {
     if (ours != other || !nearest.empty()) continue;
-    nearest = same_meaning(instead, left);
+    nearest = meaning(instead);
     if (!nearest.empty()) nearest += fmt::format(" (--column {}={})", instead, nearest);
   }
   if (!nearest.empty()) return "nearest: " + nearest;
@@ -326,7 +407,9 @@ void TableColumns::missing(const std::string& what, const std::string& option,
   if (table_.arrays != nullptr && !table_.any_names)
     throw std::invalid_argument(fmt::format("{}: no \"{}\"; found: {}{}", table_.file, what, found,
                                             argument.empty() ? "" : "; " + argument));
-  const std::string near = suggestion(what);
+  std::string near = suggestion(what);
+  if (what == "y" && has("x") && has("z"))
+    near = "a plane of x and z: --dim 2 --column y=z --column fy=fz, and walls across y";
   throw std::invalid_argument(
       fmt::format("{}:{}: no column \"{}\"; found: {}{}; other names by --column {}=THEIRS{}",
                   table_.file, table_.header_line, what, found, near.empty() ? "" : "; " + near,

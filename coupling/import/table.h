@@ -97,6 +97,10 @@ class ColumnNames {
   void mark_used(const std::string& ours, const std::string& theirs);
   /// Whether the user or the format names this column of theirs as one of ours.
   bool claims(const std::string& theirs) const;
+  /// Whether a column of theirs stays away from `ours`: the user has chosen it for another column
+  /// of a table of the same kind (--column y=z), or `of_format` the format names it so.
+  bool is_taken_for_another(const std::string& ours, const std::string& theirs,
+                            bool of_format) const;
   /// Remembers that a name of another program was taken: "FILE: i = end1".
   void mark_taken(const std::string& file, const std::string& ours, const std::string& theirs);
   /// Those remembered, a sentence per file, and forgets them.
@@ -160,9 +164,12 @@ class TableColumns {
   std::vector<std::string> misspelled() const;
   /// Whether any column that was taken has a unit of its own.
   bool tells_units() const;
+  /// Whether the user has chosen others of the vector "c_fc[1]" ... of a column.
+  bool chose_of(const std::string& name) const;
 
  private:
   ForeignColumn look_up(const std::string& ours) const;
+  bool is_row_number(const std::string& ours, const Heading& heading) const;
   void note_unit(const std::string& unit, const Heading& heading) const;
   /// What the user may have meant by one of ours, "" or "nearest: NAME": by another program's name,
   /// a slip of the pen, or the columns that are left.

@@ -37,10 +37,19 @@ std::string without_number(const std::string& told) {
   if (told.find_first_of("0123456789") != std::string::npos &&
       std::isalpha(static_cast<unsigned char>(told.front())) != 0)
     return out + "; leave the letters out in the tables of grains and of contacts";
-  for (const char* word : {"total", "sum", "mean", "average", "count", "min", "max", "std", "median"})
+  for (const char* word :
+       {"total", "sum", "mean", "average", "count", "min", "max", "std", "median"})
     if (plain_column_name(told).starts_with(word))
       return out + "; leave out rows of sums and means";
   return out;
+}
+
+// "|---|:--:|", "+----+", "----- -----": a line below names, of Markdown and of text tables.
+bool is_rule(std::string_view text) {
+  if (text.find_first_not_of("-=+|: \t") != std::string_view::npos) return false;
+  return text.find("---") != std::string_view::npos || text.find("===") != std::string_view::npos ||
+         (text.find("--") != std::string_view::npos &&
+          text.find_first_of("|+") != std::string_view::npos);
 }
 
 }  // namespace
@@ -91,8 +100,9 @@ std::string ForeignRow::plain_number(const ForeignColumn& column) const {
   }
   if (!decimal_commas) return told;
   if (told.find('.') != std::string::npos)
-    refuse(fmt::format("column {}: found \"{}\", expected a comma in decimals, as in the rows before",
-                       name_of(column), told));
+    refuse(
+        fmt::format("column {}: found \"{}\", expected a comma in decimals, as in the rows before",
+                    name_of(column), told));
   std::replace(told.begin(), told.end(), ',', '.');
   return told;
 }
@@ -179,9 +189,9 @@ int ForeignRow::digits(const ForeignColumn& column) const {
 bool ForeignRow::flag(const ForeignColumn& column) const {
   if (empty(column)) return false;
   const std::string_view told = column.constant ? std::string_view() : text(column);
-  for (const std::string_view yes : {"True", "true", "TRUE"})
+  for (const std::string_view yes : {"True", "true", "TRUE", "yes", "Yes", "YES"})
     if (told == yes) return true;
-  for (const std::string_view no : {"False", "false", "FALSE"})
+  for (const std::string_view no : {"False", "false", "FALSE", "no", "No", "NO"})
     if (told == no) return false;
   const double value = number(column);
   if (value != 0 && value != 1)
@@ -250,7 +260,7 @@ void TableReader::read(const ForeignTable& table,
   for (long long n = 0; (table.rows < 0 || n < table.rows) && lines.next(line);) {
     row.line = lines.line();
     const std::string_view text = trimmed(line);
-    if (text.empty()) continue;
+    if (text.empty() || (table.rows < 0 && is_rule(text))) continue;
     if (table.rows < 0 && text.front() == '#') {
       RowParts behind;
       const auto& values = behind.of(text, table.separator);

@@ -161,7 +161,8 @@ UntakenColumns untaken_columns(const ForeignTable& table, const TableColumns& co
     for (const std::string& name : names) {
       const std::string plain = plain_untaken_name(table, name);
       const bool size = !grains && is_size_of_force(plain);
-      if (!size && std::regex_match(plain, meaning.names)) some.push_back(name);
+      if (!size && std::regex_match(plain, meaning.names) && !columns.chose_of(name))
+        some.push_back(name);
     }
     if (!some.empty()) told.push_back(fmt::format("of {}: {}", meaning.what, grouped_names(some)));
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "coupling/import/foreign_kind.h"
 #include "coupling/import/format.h"
 #include "coupling/import/text_source.h"
 #include "coupling/import/told_units.h"
@@ -43,8 +44,10 @@ std::vector<ForeignTable> scan(const std::string& file, ColumnNames& names) {
     std::string found = bytes.substr(0, std::min<std::size_t>(bytes.find('\n'), 40));
     if (std::any_of(found.begin(), found.end(), [](unsigned char c) { return c < ' '; }))
       found = "(no text)";
-    throw std::invalid_argument(fmt::format(
-        "{}:1: found \"{}\", expected \"# vtk DataFile\" or \"<VTKFile\"", file, found));
+    const std::string kind = foreign_kind(found, "vtk");
+    throw std::invalid_argument(
+        fmt::format("{}:1: found \"{}\", expected \"# vtk DataFile\" or \"<VTKFile\"{}", file,
+                    found, kind.empty() ? "" : "; this is " + kind));
   }
   const VtkData data = legacy ? read_legacy_vtk(file, bytes) : read_xml_vtk(file, bytes);
   refuse_pictures(file, data);

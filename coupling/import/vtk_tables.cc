@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <stdexcept>
 #include <unordered_map>
@@ -140,7 +141,7 @@ class Tables {
                                                 array.name, array.rows(), rows));
   }
 
-  void add_places(const Rows& points, const char* const names[3], Columns& out) const {
+  void add_places(const Rows& points, const std::array<const char*, 3>& names, Columns& out) const {
     for (std::size_t a = 0; a < 3; ++a) {
       VtkArray one;
       one.name = names[a];
@@ -160,11 +161,22 @@ class Tables {
     for (const VtkLine& line : data_.lines) rows.push_back(static_cast<std::size_t>(line.first));
     if (rows.empty()) {
       rows = all_rows(data_.points.rows());
-      const char* const places[] = {"px", "py", "pz"};
-      if (!points_.has("px")) add_places(rows, places, columns);
+      if (!points_.has("px")) add_places(rows, {"px", "py", "pz"}, columns);
     }
     for (const VtkArray& array : data_.of_points) columns.add(array, rows);
     return columns.table(TableKind::contacts, rows.size());
+  }
+
+  // Where the lines end: the centres of grains of another file, or anything else.
+  void add_ends(Columns& out) const {
+    Rows first, second;
+    for (const VtkLine& line : data_.lines) {
+      first.push_back(static_cast<std::size_t>(line.first));
+      second.push_back(static_cast<std::size_t>(line.second));
+    }
+    if (first.empty() || cells_.has("x1")) return;
+    add_places(first, {"x1", "y1", "z1"}, out);
+    add_places(second, {"x2", "y2", "z2"}, out);
   }
 
   // The points of the grains, with the data of the cells that they are where these tell the size.
@@ -179,8 +191,7 @@ class Tables {
   ForeignTable grains() const {
     Columns columns(file_);
     const Rows points = points_of_grains();
-    const char* const places[] = {"x", "y", "z"};
-    add_places(points, places, columns);
+    add_places(points, {"x", "y", "z"}, columns);
     for (const VtkArray& array : data_.of_points) columns.add(array, points);
     if (of_vertices_) {
       Rows rows;
@@ -222,8 +233,10 @@ class Tables {
     for (const VtkLine& line : data_.lines) rows.push_back(line.row);
     if (rows.empty()) rows = all_rows(data_.of_cells.front().rows());
     for (const VtkArray& array : data_.of_cells) columns.add(array, rows);
-    if (!ends_are_grains || data_.lines.empty() || cells_.has("i") || cells_.has("j"))
+    if (!ends_are_grains || data_.lines.empty() || cells_.has("i") || cells_.has("j")) {
+      add_ends(columns);
       return columns.table(TableKind::contacts, rows.size());
+    }
     const auto ids_of_points = ids();
     const auto end_of = [&](std::int64_t point) {
       const auto at = ids_of_points.find(point);

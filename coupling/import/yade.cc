@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "coupling/import/foreign_kind.h"
 #include "coupling/import/format.h"
 #include "coupling/import/synonyms.h"
 #include "coupling/import/told_units.h"
@@ -64,6 +65,17 @@ constexpr const char* kCommas =
     "second "
     "body)";
 
+// Attributes that no comment names are called by their numbers, "attrs[1]", for --column.
+void number_attributes(std::vector<Comment>& comments, std::size_t count) {
+  for (Comment& comment : comments) {
+    std::vector<std::string>& names = comment.names;
+    if (names.empty() || !names.back().starts_with("attr") || names.size() > count) continue;
+    const std::string word = names.back();
+    names.pop_back();
+    for (int k = 1; names.size() < count; ++k) names.push_back(fmt::format("{}[{}]", word, k));
+  }
+}
+
 std::vector<ForeignTable> scan(const std::string& file, ColumnNames&) {
   Lines lines(file);
   std::vector<Comment> comments;
@@ -97,6 +109,11 @@ std::vector<ForeignTable> scan(const std::string& file, ColumnNames&) {
     }
     put_attributes(comments);
     split(line, ' ', fields);
+    number_attributes(comments, fields.size());
+    if (const std::string kind = foreign_kind(
+            comments.empty() ? std::string(line) : "#" + comments.front().text, "yade");
+        !kind.empty())
+      throw std::invalid_argument(fmt::format("{}: this is {}", file, kind));
     if (fields.size() == 1 && line.find(',') != std::string_view::npos)
       throw std::invalid_argument(
           fmt::format("{}: found \"{}\", expected values with blanks between{}", lines.where(),

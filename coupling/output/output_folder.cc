@@ -33,6 +33,13 @@ bool left_by_older_version(const std::string& name) {
          name.starts_with("profiles.") || name.starts_with("fits.") || name.ends_with(".vtu");
 }
 
+// "table.csv": a file is expected, and a folder would be made.
+bool is_file_name(const fs::path& name) {
+  constexpr std::array<std::string_view, 11> endings{
+      ".csv", ".txt", ".h5", ".hdf5", ".json", ".html", ".svg", ".png", ".pdf", ".vtk", ".vtu"};
+  return std::find(endings.begin(), endings.end(), name.extension().string()) != endings.end();
+}
+
 // A list may have been edited: nothing outside the folder is ever meant.
 bool inside(const fs::path& name) {
   return !name.empty() && name.is_relative() &&
@@ -58,6 +65,11 @@ OutputFolder::OutputFolder(const std::string& folder, const std::string& command
   const fs::file_status there = fs::status(folder_, error);
   if (fs::exists(there) && !fs::is_directory(there)) {
     refuse(fmt::format("it is {}", kind_of(there.type())));
+  }
+  if (!fs::exists(there) && is_file_name(folder_)) {
+    refuse(fmt::format(
+        "what is written is a folder, and the name ends as a file's, allowed: such as {}",
+        (folder_.parent_path() / folder_.stem()).string()));
   }
   if (!fs::exists(there) && fs::is_symlink(fs::symlink_status(folder_, error))) {
     refuse(fmt::format("it is a link to {}, which leads nowhere",

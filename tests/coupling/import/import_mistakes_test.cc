@@ -213,7 +213,7 @@ TEST(ImportMistakes, MistakesInDumps) {
   const std::vector<Mistake> mistakes{
       {g, c, "", "c.txt:9: no columns \"i\", \"j\", \"fx\"; found: index c_ids[1] c_ids[2] c_p[1]"},
       {changed(g, " radius", " c_r"), c, columns,
-       "g.txt:9: no column \"radius\"; found: id type x y z c_r mass; not used so far: type c_r; "},
+       "g.txt:9: no column \"radius\"; found: id type x y z c_r mass; nearest: c_r; "},
       {cut(g, 1), c, columns,
        "truncated: step 7 has 6 rows announced, 5 there (the last one ends without a line end)"},
       {cut(g, 60), c, columns, "g.txt:15: truncated: step 7 has 6 rows announced, 5 there"},

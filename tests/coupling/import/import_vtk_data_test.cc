@@ -262,7 +262,7 @@ TEST(ImportVtkData, FilesWithoutAGrainInCommonArePiecesOfOneStep) {
   EXPECT_EQ(steps.steps, (Steps{0, 1}));
   EXPECT_TRUE(steps.notes.empty());
   EXPECT_THAT(steps_of_names({{"g_0.vtp", true, {}}, {"g_1.vtp", true, {}}}).notes,
-              ::testing::ElementsAre(HasSubstr("taken as steps (without ids")));
+              ::testing::ElementsAre(HasSubstr("taken as steps")));
 }
 
 }  // namespace

@@ -177,6 +177,14 @@ TEST(OutputFolder, ResultsOfVersionsWithoutAListAreReplaced) {
   EXPECT_EQ(testing::read_text(folder / "out/grains.csv"), "new");
 }
 
+TEST(OutputFolder, NamesOfFilesAreNoFolders) {
+  const testing::Folder folder;
+  EXPECT_THAT(refusal([&] { OutputFolder(folder / "table.csv", "structure"); }),
+              AllOf(HasSubstr("what is written is a folder"), HasSubstr("table")));
+  EXPECT_FALSE(exists(folder / "table.csv"));
+  EXPECT_EQ(refusal([&] { OutputFolder(folder / "run.2", "run"); }), "");
+}
+
 TEST(OutputFolder, WhatIsNoFolderIsCalledByItsKind) {
   const testing::Folder folder;
   const auto open = [&](const std::string& name) {
