@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "coupling/fit/figures.h"
+#include "coupling/fit/fit_keys.h"
 #include "coupling/fit/fit_report.h"
 #include "coupling/fit/heap_result.h"
 #include "coupling/heap/scaled.h"
@@ -378,26 +378,21 @@ Study pile_study() {
   out.sections.push_back(kChangeKeys);
   out.sections.push_back(kAverageKeys);
   out.sections.push_back(kHeapKeys);
-  out.sections.push_back(kFitKeys);
+  fit_heap_models(out);
   out.sections.push_back(kMeasuredKeys);
-  out.figures.push_back(figures_of_fits);
   out.figures.push_back(measured_figures);
   out.check = [](const Case& value) {
     check_heap_windows(value.get<HeapSetup>());
     require_subject(value.models, Subject::heap, 2, "compare.models");
-    if (!value.models.empty() && !value.get<FitSetup>().models.empty()) {
-      throw std::invalid_argument(
-          fmt::format("compare.models: found {}, allowed: none with fit.models; there "
-                      "NAME:p=0.3 gives a model its constants",
-                      value.models.front().label));
-    }
+    check_fit(value);
     const MeasuredSetup& measured = value.get<MeasuredSetup>();
     if (!measured.field.empty()) measured_base(measured);
   };
   out.averaged = [](const Case& value) {
     return averaged_values(value.get<AverageSetup>(), value.get<HeapSetup>().heights.size() + 1);
   };
-  out.without = {"average.depths", "average.half_width"};
+  out.without = {"average.depths", "average.half_width", "fit.base", "fit.coverage",
+                 "fit.coverage_draws"};
   out.fills = {"rho_g", "phi_deg", "left_deg", "right_deg", "h", "dim", "depth"};
   out.make_run = [](const Case& value, std::int64_t number, int threads) {
     return make_pile(value, value.get<dem::PileSetup>(), number, threads);

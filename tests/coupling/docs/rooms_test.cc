@@ -37,10 +37,8 @@ const std::vector<Room>& rooms() {
         "run", "statistics", "structure"}},
       // Each study by itself, and what it takes from others of its kind.
       {"studies/point_load",
-       {"averaging", "case", "compare", "elastic_constants", "models", "observe", "output",
-        "report", "run"}},
-      {"studies/point_load_verdict",
-       {"case", "fit", "judge", "models", "observe", "report", "run", "studies/point_load"}},
+       {"averaging", "case", "compare", "elastic_constants", "fit", "judge", "models", "observe",
+        "output", "report", "run"}},
       {"studies/pile",
        {"averaging", "case", "compare", "fit", "heap", "models", "observe", "output", "report",
         "run", "statistics"}},

@@ -280,8 +280,12 @@ TEST(SpaceLoadRun, RefusesWhatDoesNotHoldInSpace) {
               HasSubstr("packing.width: found 0.02"));
   EXPECT_THAT(complaint("study = \"point-load\"\n[load]\nweights = 2\n"),
               HasSubstr("load.weights: found 2"));
-  EXPECT_THAT(complaint("study = \"point-load-verdict\"\n[packing]\ndim = 3\n"),
-              HasSubstr("packing.dim"));
+  EXPECT_THAT(complaint("study = \"point-load\"\n[packing]\ndim = 3\n[fit]\nmodels = "
+                        "[\"flamant\"]\n"),
+              HasSubstr("x.toml:5: fit.models: found \"flamant\" with packing.dim = 3"));
+  EXPECT_THAT(complaint("study = \"point-load\"\n[grains]\nfiles = [\"a.h5\"]\n[packing]\ndim "
+                        "= 3\n"),
+              HasSubstr("x.toml:3: grains.files: found 1 with packing.dim = 3, allowed: none"));
 }
 
 TEST(BaseStress, HoldsTheForceAndKnowsImages) {
