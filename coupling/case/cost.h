@@ -4,7 +4,7 @@
 #include <string>
 
 #include "coupling/case/apply.h"
-#include "dem/study/outlook.h"
+#include "dem/run/outlook.h"
 
 namespace grainfield::coupling {
 

@@ -10,8 +10,11 @@
 
 #include "coupling/case/case.h"
 #include "coupling/output/figure.h"
-#include "dem/study/outlook.h"
-#include "dem/study/run.h"
+#include "dem/laws/material_setup.h"
+#include "dem/motion/motion_setup.h"
+#include "dem/run/outlook.h"
+#include "dem/run/run.h"
+#include "dem/run/setup.h"
 
 namespace grainfield::coupling {
 
@@ -104,7 +107,7 @@ struct Study {
   /// std::invalid_argument beginning with the key that does not hold.
   std::unique_ptr<dem::Run> (*make_run)(const Case&, std::int64_t number, int threads) = nullptr;
   /// What a realization will take, from the case alone; set where make_run is. Throws what make_run
-  /// would for any of the realizations; draws at most so many grains (dem/study/outlook.h).
+  /// would for any of the realizations; draws at most so many grains (dem/run/outlook.h).
   dem::Outlook (*foresee)(const Case&, std::int64_t draws) = nullptr;
   /// What the case names and the run leaves out, one line for a warning, empty: nothing; null:
   /// nothing ever. After foresee.

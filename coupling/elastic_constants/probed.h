@@ -1,8 +1,8 @@
 // Elastic moduli of one packing from small strains of it, forth and back
-// (dem/study/probe_record.h).
+// (dem/run/probe_record.h).
 #pragma once
 #include "coupling/elastic_constants/space_symmetry.h"
-#include "dem/study/probe_record.h"
+#include "dem/run/probe_record.h"
 
 namespace grainfield::coupling {
 

@@ -16,8 +16,10 @@
 #include "coupling/python/own_forces.h"
 #include "dem/heap/grain_family.h"
 #include "dem/laws/material_defaults.h"
+#include "dem/laws/material_setup.h"
+#include "dem/motion/motion_setup.h"
+#include "dem/run/common.h"
 #include "dem/snapshot/added_forces_mark.h"
-#include "dem/study/common.h"
 
 namespace grainfield::python {
 namespace {

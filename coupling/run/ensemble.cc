@@ -20,9 +20,9 @@
 #include "coupling/run/realization_file.h"
 #include "coupling/system/signals.h"
 #include "dem/cannot_read_now.h"
+#include "dem/run/run.h"
 #include "dem/snapshot/number.h"
 #include "dem/storage_failed.h"
-#include "dem/study/run.h"
 
 namespace grainfield::coupling {
 namespace {

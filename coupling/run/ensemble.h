@@ -8,7 +8,7 @@
 
 #include "coupling/case/case.h"
 #include "coupling/run/ranks.h"
-#include "dem/study/run.h"
+#include "dem/run/run.h"
 
 namespace grainfield::coupling {
 

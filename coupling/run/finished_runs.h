@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "coupling/case/study.h"
-#include "dem/study/run.h"
+#include "dem/run/run.h"
 
 namespace grainfield::coupling {
 

@@ -11,8 +11,8 @@
 
 #include "continuum/model.h"
 #include "coupling/system/signals.h"
+#include "dem/run/run.h"
 #include "dem/storage_failed.h"
-#include "dem/study/run.h"
 
 namespace grainfield::coupling {
 namespace {

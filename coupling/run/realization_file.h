@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "coupling/averaging/layer.h"
+#include "dem/run/run.h"
 #include "dem/snapshot/snapshot.h"
-#include "dem/study/run.h"
 
 namespace grainfield::coupling {
 

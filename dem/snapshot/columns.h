@@ -33,6 +33,7 @@ struct Column {
                               std::array<int, 3> Row::*, std::string Row::*>;
   const char* name;
   const char* unit;
+  const char* meaning;  ///< for docs/columns.md
   Member member;
   Presence presence = Presence::always;
   bool may_be_nan = false;  ///< a coefficient that other programs do not tell

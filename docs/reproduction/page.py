@@ -50,7 +50,9 @@ result" means not run or not measured; the row says which.
 - **Recorded strains.** Some strains are known only to the distance of the recorded states. A miss within half of
   this distance cannot tell.
 - **Dips and peaks** are significant at 5 % over [all pours together](#dips-and-peaks-of-all-pours). A peak also
-  counts as "no dip". The result "neither" is uninformative: it is compatible with a dip and with no dip.
+  counts as "no dip". The result "neither" is uninformative: it is compatible with a dip and with no dip. Every p
+  of a difference of pressures on this page is two-sided. The key `dip.p_value` of a summary is one-sided: it is half
+  of that for a dip, and one minus half of it for a peak. A p of a tail or of a fit asks only for a worse fit.
 - **Fits.** A fit is beyond the errors when its χ²/dof exceeds the value that a true model exceeds in 1 of 100
   ensembles. The fits of the point source, of OSL and of the asymmetric piles used other weights: there it is
   1.35 of 1,000.
@@ -60,6 +62,7 @@ result" means not run or not measured; the row says which.
 - **"Hardly changes"** means by less than a tenth in our whole interval. "Changes" means by more than a tenth in our
   whole interval. Between them the spread is too wide to tell. "Negligible" means less than a tenth of the
   effect of μ, likewise.
+- **Causes.** Some rows that differ end with the cause, or with what was tried in vain.
 - **The steeper flank** is the flank with the larger mean, on whichever side. The study's page says which side was
   meant.
 - **Nothing was tuned to agree**, with one exception: the window of Liffman's H at 32.6° was chosen after the piles

@@ -3,7 +3,8 @@
 A row is a number or a word. A number has `range`, the source's value with its reading error, and
 `key`, ours; `effect` is what a ratio's distance from 1 says in the source. A word comes from a number by
 `limits`, or from a rule by name; `agrees` lists the words of ours that agree with the source's. A row that
-has no result says in `gap` why: "not run", or "not measured" where no study has such a figure.
+has no result says in `gap` why: "not run", or "not measured" where no study has such a figure. `cause`
+says why a row differs, or what was tried; a row that does not differ does not show it.
 """
 from __future__ import annotations
 
@@ -384,13 +385,19 @@ def note_of(row: Row, results: Results) -> str:
     return "; " + note["says"].format(value=value) if value is not None and value > note["above"] else ""
 
 
+def cause_of(row: Row, said: str) -> str:
+    """Why ours differs: "; ..." behind the agreement, or nothing."""
+    return f"; {row['cause']}" if "cause" in row and said.startswith("differs") else ""
+
+
 def judged(row: Row, results: Results) -> tuple[str, str]:
     """Ours and the agreement; where there is no result, why, and nothing."""
     found = rule_of(row)(row, results)
     if found is None:
         return row.get("gap", NOT_RUN) if results.has(row["study"]) else NOT_RUN, ""
     if isinstance(found, Measured):
-        return number_text(found, row), agreement(found, row) + note_of(row, results)
+        said = agreement(found, row)
+        return number_text(found, row), said + cause_of(row, said) + note_of(row, results)
     word = found.partition(":")[0]
     said = SILENT.get(word, "agrees" if word in row["agrees"] else "differs")
-    return found, said + note_of(row, results)
+    return found, said + cause_of(row, said) + note_of(row, results)

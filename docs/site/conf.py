@@ -34,13 +34,13 @@ highlight_language = "none"
 CHAPTERS = {
     "Start": ["docs/README", "docs/guide", "docs/tutorial-point-load", "docs/gallery", "docs/install", "docs/glossary",
               "docs/symbols", "docs/geotechnical", "docs/state-of-the-question"],
-    "How to": ["docs/steps", "docs/import", "docs/import-formats", "docs/averaging", "docs/strain", "docs/structure",
-               "docs/elastic-constants", "docs/fits", "docs/comparison", "docs/experiments", "docs/python"],
+    "How to": ["docs/steps", "docs/howto", "docs/import", "docs/import-formats", "docs/averaging", "docs/strain",
+               "docs/structure", "docs/elastic-constants", "docs/fits", "docs/comparison", "docs/experiments", "docs/python"],
     "Theory": ["docs/theory-*", "docs/verdict", "docs/statistics"],
     "Simulation": ["docs/piles", "docs/fields", "docs/contact-laws", "docs/shapes", "docs/integrators",
                    "docs/sleeping", "docs/collisions", "docs/quasistatic"],
-    "Reference": ["docs/keys", "docs/summary-keys", "docs/file-formats", "docs/reproduction", "docs/benchmarks",
-                  "docs/reliability"],
+    "Reference": ["docs/index", "docs/commands", "docs/keys", "docs/summary-keys", "docs/columns", "docs/file-formats",
+                  "docs/reproduction", "docs/benchmarks", "docs/reliability"],
     "Studies": ["docs/cases/*"],
     "Project": ["docs/*", "docs/reproduction/results/*", "CONTRIBUTING", "CHANGELOG"],
 }

@@ -18,8 +18,8 @@
 
 #include "coupling/case/case.h"
 #include "coupling/run/ensemble.h"
-#include "dem/study/pile_run.h"
-#include "dem/study/setup.h"
+#include "coupling/studies/pile/poured_run.h"
+#include "coupling/studies/pile/simulation.h"
 
 namespace {
 

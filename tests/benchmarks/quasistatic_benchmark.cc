@@ -13,10 +13,10 @@
 #include <string>
 #include <utility>
 
+#include "coupling/studies/point_load/layer_probe.h"
 #include "dem/engine/engine.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/random/random.h"
-#include "dem/study/layer_probe.h"
 
 namespace grainfield::benchmarks {
 namespace {

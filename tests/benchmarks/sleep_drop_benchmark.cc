@@ -20,15 +20,16 @@
 #include <utility>
 #include <vector>
 
+#include "coupling/studies/pile/simulation.h"
 #include "dem/computation_failed.h"
 #include "dem/engine/engine.h"
 #include "dem/heap/grain_family.h"
 #include "dem/heap/relaxation.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/random/random.h"
+#include "dem/run/common.h"
+#include "dem/run/setup.h"
 #include "dem/snapshot/snapshot.h"
-#include "dem/study/common.h"
-#include "dem/study/setup.h"
 
 namespace {
 

@@ -9,9 +9,9 @@
 #include <map>
 #include <numbers>
 
+#include "coupling/studies/sample/simulation/grains.h"
 #include "dem/engine/engine.h"
 #include "dem/motion/runge_kutta3.h"
-#include "dem/study/sample_grains.h"
 #include "tests/dem/gas_scene.h"
 #include "tests/dem/top_scene.h"
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "dem/random/random.h"
+#include "dem/run/run.h"
 #include "dem/snapshot/snapshot.h"
-#include "dem/study/run.h"
 
 namespace grainfield::test {
 

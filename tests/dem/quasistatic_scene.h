@@ -2,10 +2,10 @@
 #pragma once
 #include <vector>
 
+#include "dem/laws/material_setup.h"
 #include "dem/packing/packing.h"
 #include "dem/random/random.h"
 #include "dem/shapes/polygon.h"
-#include "dem/study/setup.h"
 
 namespace grainfield::dem {
 

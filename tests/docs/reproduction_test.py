@@ -11,6 +11,8 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs/reproduction"))
 
 import collect  # noqa: E402
+import causes  # noqa: E402
+import rve_scatter as scatter  # noqa: E402
 import page as maker  # noqa: E402
 from rows import FILES, NOT_RUN, RULES, agreement, all_rows, band, judged, read_toml  # noqa: E402
 from summaries import Measured, Results, holm  # noqa: E402
@@ -36,10 +38,10 @@ def made(tmp_path):
 
 
 def row_of(text, what):
-    """The cells of a row by its second one, without what counts as theirs."""
+    """The cells of a row by its second one, without what counts as theirs and without its cause."""
     found = [line for line in text.splitlines() if line.split(" | ")[1:2] == [what]]
     assert len(found) == 1, what
-    cells = [cell.strip() for cell in found[0].strip("|").split("|")]
+    cells = [re.sub("; cause.*?(?=; slow flow|$)", "", cell.strip()) for cell in found[0].strip("|").split("|")]
     return cells[:3] + cells[4:]
 
 
@@ -271,7 +273,7 @@ def test_superellipsoids_change_in_words_with_notes_on_the_run(made):
 
     assert row_of(text, "q/p from mu = 0.25 to 0.5, penalty law")[3:] == [
         "rises: +0.400 ± 0.028", "agrees", "", "`wellmann-box` (quick, 200 grains)"]
-    assert said("shear stress over the first volumetric one, from penalty to Hertz law") == [
+    assert said("shear stress over the first volumetric one, from penalty to Hertz law, mu = 0.25") == [
         "undecided: +0.010 ± 0.028", "too few realizations to tell"]
     assert said("q/p from c^T/c^N = 0.25 to 1, mu = 0.5") == [
         "counts: +0.200 ± 0.028 beside +0.400, +50 ± 7 %", "differs"]
@@ -280,15 +282,15 @@ def test_superellipsoids_change_in_words_with_notes_on_the_run(made):
         "between: +0.090 ± 0.028 beside +0.400, +22 ± 7 %", "spread too wide to tell"]
     assert said("q/p from nu = 0 to 0.45, mu = 0.25") == [
         "negligible: +0.001 ± 0.003 beside +0.410, +0 ± 1 %", "agrees"]
-    assert said("lateral over axial stress, from penalty to Hertz law") == [
+    assert said("lateral over axial stress, from penalty to Hertz law, mu = 0.5") == [
         "hardly changes: +0.010 ± 0.003, +3 ± 1 %", "agrees"]
     assert said("q/p without friction, penalty law") == [
         "0.100 ± 0.010", "agrees; slow flow, not at rest: kinetic over elastic energy up to 15"]
-    assert said("volume of the RVEs under shear, mu = 0.5") == [
+    assert said("volume of the RVEs under shear, Hertz law, mu = 0.5") == [
         "dilation: trace/3 falls by 0.00020 ± 0.00020, then rises by 0.00100 ± 0.00010", "differs"]
     assert said("shear strain xz where the axial stress is least, penalty law, mu = 0.25") == [
         "0.070 ± 0.003", "differs by 0.0075 (2.5 standard errors)"]
-    assert said("volumetric stress over its start, from penalty to Hertz law") == ["falls: -0.100 ± 0.028",
+    assert said("volumetric stress over its start, from penalty to Hertz law, mu = 0.25") == ["falls: -0.100 ± 0.028",
                                                                                    "differs"]
 
 
@@ -301,12 +303,12 @@ def test_a_row_counts_the_realizations_of_its_member(made):
            "shear_stiffness.first.shear_hertz_025": 9, "shear_stiffness.first.standard_error.shear_hertz_025": 0.3,
            "shear_stiffness.middle.shear_hertz_025": 3, "shear_stiffness.middle.standard_error.shear_hertz_025": 0.4}
     text = made({"wellmann-box": box})
-    assert row_of(text, "volumetric stress over its start, mu = 0.5")[3:6] == ["3.000 ± 0.050", "agrees", "2"]
+    assert row_of(text, "volumetric stress over its start, Hertz law, mu = 0.5")[3:6] == ["3.000 ± 0.050", "agrees", "2"]
     assert row_of(text, "volume fraction of 1,530 dropped grains and spheres below the lid")[5] == "3"
     # A miss of half the distance of the recorded states is none that these can tell.
     assert row_of(text, "shear strain xz where the axial stress is least, penalty law, mu = 0.25")[4] == (
         "nearer than the recorded strains can tell")
-    what = "shear stiffness from a shear strain xz of 0 to 0.02 to one of 0.04 to 0.06, mu = 0.25"
+    what = "shear stiffness from a shear strain xz of 0 to 0.02 to one of 0.04 to 0.06, Hertz law, mu = 0.25"
     assert row_of(text, what)[3:5] == ["falls: -6.000 ± 0.500", "agrees"]
 
 
@@ -322,7 +324,7 @@ def test_one_sample_decides_nothing_and_no_run_is_said_so(made):
                                   "sample.lateral_stress_ratio.hertz_05": 0.303}})
     few = "too few realizations to tell"
     assert row_of(text, "q/p from c^T/c^N = 0.25 to 1, mu = 0.5")[3:5] == ["undecided: +0.001, +1 %", few]
-    assert row_of(text, "lateral over axial stress, from penalty to Hertz law")[3:5] == ["undecided: +0.003, +1 %", few]
+    assert row_of(text, "lateral over axial stress, from penalty to Hertz law, mu = 0.5")[3:5] == ["undecided: +0.003, +1 %", few]
     assert row_of(text, "angle of repose, point source")[3] == "not run"
 
 
@@ -383,13 +385,15 @@ def test_collected_runs_by_hand():
     def run(member, p, stress):
         states = {name: collect.numpy.array(values) for name, values in {
             "strain": [0, 0.04, 0.08, 0.1, 0.12, 0.14, 0.2], "p": [p] * 7, "sigma_xz": [s * p for s in stress]}.items()}
-        return member, {"summary": {"sample.a": p, "sample.b": None, "case.name": "box"}, "cpu_seconds": 1}, states, None
+        summary = {"sample.a": p, "sample.b": None, "case.name": "box"}
+        return member, {"summary": summary, "cpu_seconds": 1}, states, None, None
 
     straight = [0, 0.4, 0.6, 0.65, 0.7, 0.75, 0.9]
     out = collect.collect([run("shear_a", 10, straight), run("shear_a", 14, [-s for s in straight]),
-                           ("filled", {"summary": {"sample.a": 3}, "cpu_seconds": 2}, None, None)])
+                           ("filled", {"summary": {"sample.a": 3}, "cpu_seconds": 2}, None, None, 23.5)])
     assert out["sample.a.shear_a"] == 12 and out["sample.a.least.shear_a"] == 10
     assert out["sample.a.standard_error.shear_a"] == pytest.approx(2)
+    assert out["lid_height.filled"] == 23.5 and "lid_height.shear_a" not in out
     assert out["sample.a.filled"] == 3 and "sample.a.standard_error.filled" not in out
     assert "sample.b.shear_a" not in out and out["ensemble.realizations.shear_a"] == 2
     for part, slope in {"first": 10, "middle": 2.5, "last": 2.5}.items():
@@ -399,9 +403,46 @@ def test_collected_runs_by_hand():
 
 def test_a_compression_is_read_where_a_state_is_recorded():
     states = {name: collect.numpy.array(values) for name, values in {
-        "strain": [0, 0.02, 0.0402, 0.06, 0.04], "p": [0, 1, 4, 3, 2], "axial_q_over_p": [0, 1, 1.2, 1, 1]}.items()}
-    assert collect.compression_figures(states) == {"q_over_p_at_0.04": 1.2, "pressure_at_0.04": 4}
-    assert collect.compression_figures({**states, "strain": states["strain"] * 0.9}) == {}
+        "strain": [0, 0.02, 0.0402, 0.06, 0.04], "p": [0, 1, 4, 3, 2], "axial_q_over_p": [0, 1, 1.2, 1, 1],
+        "kinetic_energy_J": [1, 1, 5e-4, 4e-4, 9], "elastic_energy_J": [0, 1, 1, 2, 1]}.items()}
+    assert collect.compression_figures(states) == {
+        "q_over_p_at_0.04": 1.2, "pressure_at_0.04": 4, "kinetic_share_late": 5e-4, "quasistatic_from": 0.0402}
+    assert "pressure_at_0.04" not in collect.compression_figures({**states, "strain": states["strain"] * 0.9})
+    assert "quasistatic_from" not in collect.compression_figures(
+        {**states, "kinetic_energy_J": collect.numpy.array([1, 1, 1, 1, 9])})
+
+
+def test_the_lid_stands_on_the_packing():
+    """23.6 in the source; of three packings the walls across z are no further apart than the page's error says."""
+    heights = [collect.lid_height(ROOT / f"docs/reproduction/states/wellmann/packing-{k}.h5.xz") for k in (1, 2, 3)]
+    assert min(heights) == pytest.approx(RESULTS.plain("wellmann-box", "lid_height.least.packing"))
+    assert all(23 < height < 24 for height in heights)
+
+
+def test_a_cause_ends_a_row_that_differs_alone():
+    row = {"study": "s", "key": "k", "range": [1, 2], "cause": "cause: c"}
+
+    class One:
+        def number(self, *_):
+            return self.found
+
+    one = One()
+    one.found = Measured(5, 0.1)
+    assert judged(row, one)[1] == "differs by 3 (30.0 standard errors); cause: c"
+    one.found = Measured(1.5, 0.1)
+    assert judged(row, one)[1] == "agrees"
+
+
+def test_scatter_of_rves_by_hand():
+    """A known line of the stress over the height is all of the scatter; corners as far apart as spheres fit."""
+    heights = scatter.numpy.array([0.0, 0, 0, 0, 1, 1, 1, 1])
+    values = 3 + heights
+    assert scatter.bar(values) == pytest.approx((8 / 7 * 0.25) ** 0.5 / 8**0.5 / 3.5)
+    assert scatter.without_line(values, heights) == pytest.approx(0, abs=1e-12)
+    sample = scatter.Sample.__new__(scatter.Sample)
+    sample.low, sample.high = scatter.numpy.zeros(3), scatter.numpy.array([20.0, 20, 24])
+    assert scatter.numpy.ptp(sample.centres(7, 1), axis=0) == pytest.approx([6, 6, 10])
+    assert scatter.numpy.ptp(sample.centres(3, 0.5), axis=0) == pytest.approx([5, 5, 6])
 
 
 def test_strains_of_rves_are_read_while_the_sample_is_loaded():
@@ -412,3 +453,12 @@ def test_strains_of_rves_are_read_while_the_sample_is_loaded():
     rves = {name: collect.numpy.array(values) for name, values in rves.items()}
     assert collect.strain_slopes(rves, "zz") == pytest.approx({"strain_slope.early": 0.5, "strain_slope.late": 1})
     assert collect.strain_slopes(rves, "xz") == pytest.approx({"strain_slope.early": 1, "strain_slope.late": 1})
+
+
+def test_the_table_of_causes_names_what_is_missing(tmp_path):
+    (tmp_path / "wellmann-box.json").write_text(json.dumps({
+        "strain_slope.late.hertz_05": 0.918, "strain_slope.late.standard_error.hertz_05": 0.003}))
+    (tmp_path / "wellmann-box-causes.json").write_text(json.dumps({"strain_slope.late.hertz_05_slow": 0.95}))
+    line = next(line for line in causes.table(Results(tmp_path)).splitlines() if line.startswith("| from 0.02"))
+    assert line == "| from 0.02 on, μ = 0.5 | about 1 | 0.918 ± 0.003 | not run | not run | not run | 0.950 |"
+    assert len({line.count("|") for line in causes.table(Results(tmp_path)).splitlines()}) == 1

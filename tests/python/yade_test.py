@@ -50,11 +50,10 @@ json.dump(dict(stress=[[stress[a, b] for b in range(3)] for a in range(3)], ids=
 """
 
 
-def test_the_script_is_short_and_stands_on_the_page():
-    text = SCRIPT.read_text()
-    body = text.partition("def packing_of")[2].splitlines()
+def test_the_script_is_short_and_the_page_links_to_it():
+    body = SCRIPT.read_text().partition("def packing_of")[2].splitlines()
     assert len([line for line in body if line.strip()]) <= 26
-    assert text in (ROOT / "docs/python.md").read_text()
+    assert "](examples/yade_scene.py)" in (ROOT / "docs/python.md").read_text()
 
 
 @pytest.mark.skipif(shutil.which("yade") is None, reason="needs the Debian package yade")

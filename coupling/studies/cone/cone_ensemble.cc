@@ -17,9 +17,10 @@
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/comparison_page.h"
 #include "coupling/studies/cone/figures.h"
+#include "coupling/studies/cone/simulation.h"
 #include "coupling/studies/pile/figures.h"
+#include "coupling/studies/pile/pile_ensemble.h"
 #include "dem/snapshot/contact_changes.h"
-#include "dem/study/cone.h"
 
 namespace grainfield::coupling {
 namespace {

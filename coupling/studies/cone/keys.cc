@@ -3,7 +3,7 @@
 
 #include "coupling/case/declare.h"
 #include "coupling/run/superellipsoid_keys.h"
-#include "dem/study/cone.h"
+#include "coupling/studies/cone/simulation.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::ConeSetup, plan.MEMBER)
 

@@ -20,13 +20,14 @@
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/studies/cone/cone_ensemble.h"
+#include "coupling/studies/cone/cone_file.h"
 #include "coupling/studies/cone/figures.h"
 #include "coupling/studies/cone/keys.h"
 #include "coupling/studies/cone/page.h"
+#include "coupling/studies/cone/simulation.h"
 #include "coupling/studies/pile/figures.h"
 #include "coupling/studies/pile/keys.h"
-#include "dem/study/cone.h"
-#include "dem/study/cone_file.h"
+#include "coupling/studies/pile/simulation.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -2,7 +2,7 @@
 #include "coupling/studies/hard_disks/keys.h"
 
 #include "coupling/case/declare.h"
-#include "dem/study/hard_disks.h"
+#include "coupling/studies/hard_disks/simulation.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::HardDisksSetup, MEMBER)
 

@@ -5,7 +5,7 @@
 
 #include "coupling/report/picture.h"
 #include "coupling/report/report.h"
-#include "dem/study/hard_disks.h"
+#include "coupling/studies/hard_disks/simulation.h"
 
 namespace grainfield::coupling {
 

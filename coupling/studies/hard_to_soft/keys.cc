@@ -2,7 +2,7 @@
 #include "coupling/studies/hard_to_soft/keys.h"
 
 #include "coupling/case/declare.h"
-#include "dem/study/hard_to_soft.h"
+#include "coupling/studies/hard_to_soft/simulation.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::HardToSoftSetup, MEMBER)
 

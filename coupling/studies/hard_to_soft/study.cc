@@ -8,7 +8,7 @@
 #include "coupling/run/recorded.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/hard_to_soft/keys.h"
-#include "dem/study/hard_to_soft.h"
+#include "coupling/studies/hard_to_soft/simulation.h"
 
 namespace grainfield::coupling {
 namespace {

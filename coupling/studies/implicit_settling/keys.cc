@@ -2,7 +2,7 @@
 #include "coupling/studies/implicit_settling/keys.h"
 
 #include "coupling/case/declare.h"
-#include "dem/study/implicit_settling.h"
+#include "coupling/studies/implicit_settling/simulation.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::ImplicitSettlingSetup, MEMBER)
 

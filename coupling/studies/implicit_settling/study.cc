@@ -13,8 +13,9 @@
 #include "coupling/run/study_result.h"
 #include "coupling/studies/implicit_settling/figures.h"
 #include "coupling/studies/implicit_settling/keys.h"
+#include "coupling/studies/implicit_settling/simulation.h"
 #include "coupling/studies/lattice_pile/keys.h"
-#include "dem/study/implicit_settling.h"
+#include "coupling/studies/lattice_pile/simulation.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -2,6 +2,7 @@
 #include "coupling/studies/lattice_pile/keys.h"
 
 #include "coupling/case/declare.h"
+#include "coupling/studies/lattice_pile/simulation.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::LatticePileSetup, lattice.MEMBER)
 

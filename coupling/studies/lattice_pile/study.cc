@@ -20,8 +20,9 @@
 #include "coupling/studies/lattice_pile/figures.h"
 #include "coupling/studies/lattice_pile/keys.h"
 #include "coupling/studies/lattice_pile/page.h"
+#include "coupling/studies/lattice_pile/simulation.h"
 #include "dem/packing/lattice_pile.h"
-#include "dem/study/setup.h"
+#include "dem/run/setup.h"
 
 namespace grainfield::coupling {
 namespace {

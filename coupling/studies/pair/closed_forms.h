@@ -17,7 +17,7 @@
 #pragma once
 #include <limits>
 
-#include "dem/study/pair.h"
+#include "coupling/studies/pair/simulation.h"
 
 namespace grainfield::coupling {
 

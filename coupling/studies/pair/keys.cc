@@ -2,7 +2,7 @@
 #include "coupling/studies/pair/keys.h"
 
 #include "coupling/case/declare.h"
-#include "dem/study/pair.h"
+#include "coupling/studies/pair/simulation.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::PairSetup, MEMBER)
 

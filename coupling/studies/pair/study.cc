@@ -13,9 +13,8 @@
 #include "coupling/run/study_result.h"
 #include "coupling/studies/pair/keys.h"
 #include "coupling/studies/pair/page.h"
+#include "coupling/studies/pair/simulation.h"
 #include "coupling/studies/pair/tables.h"
-#include "dem/study/pair.h"
-#include "dem/study/setup.h"
 
 namespace grainfield::coupling {
 namespace {

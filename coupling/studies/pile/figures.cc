@@ -5,7 +5,7 @@
 #include "coupling/statistics/spread.h"
 #include "coupling/studies/pile/keys.h"
 #include "coupling/studies/pile/pile_ensemble.h"
-#include "dem/study/setup.h"
+#include "coupling/studies/pile/simulation.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -3,6 +3,7 @@
 
 #include "coupling/case/declare.h"
 #include "coupling/heap/setup.h"
+#include "coupling/studies/pile/simulation.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::PileSetup, MEMBER)
 #define HEAP(MEMBER) GRAINFIELD_MEMBER(HeapSetup, MEMBER)

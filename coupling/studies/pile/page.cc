@@ -12,8 +12,8 @@
 #include "coupling/fit/fit_tables.h"
 #include "coupling/report/judgement.h"
 #include "coupling/run/comparison_page.h"
+#include "coupling/studies/pile/simulation.h"
 #include "dem/snapshot/number.h"
-#include "dem/study/setup.h"
 
 namespace grainfield::coupling {
 namespace {

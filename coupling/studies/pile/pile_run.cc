@@ -4,6 +4,7 @@
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/grain_keys.h"
 #include "coupling/studies/pile/keys.h"
+#include "coupling/studies/pile/simulation.h"
 
 namespace grainfield::coupling {
 

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "coupling/case/study.h"
-#include "dem/study/outlook.h"
-#include "dem/study/run.h"
-#include "dem/study/setup.h"
+#include "coupling/studies/pile/simulation.h"
+#include "dem/run/outlook.h"
+#include "dem/run/run.h"
 
 namespace grainfield::coupling {
 

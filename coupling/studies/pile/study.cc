@@ -11,7 +11,7 @@
 #include "coupling/run/measured_base.h"
 #include "coupling/studies/pile/keys.h"
 #include "coupling/studies/pile/pile_run.h"
-#include "dem/study/setup.h"
+#include "coupling/studies/pile/simulation.h"
 
 namespace grainfield::coupling {
 

@@ -10,6 +10,7 @@
 #include "coupling/elastic_constants/elastic_map.h"
 #include "coupling/elastic_constants/symmetry.h"
 #include "coupling/judge/words.h"
+#include "coupling/studies/pile/simulation.h"
 #include "coupling/studies/pile_fields/drawing.h"
 #include "coupling/studies/pile_fields/robust.h"
 #include "coupling/studies/pile_fields/topic.h"

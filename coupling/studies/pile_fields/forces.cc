@@ -14,6 +14,7 @@
 #include "coupling/structure/force_chains.h"
 #include "coupling/structure/histogram.h"
 #include "coupling/structure/yield.h"
+#include "coupling/studies/pile/simulation.h"
 #include "coupling/studies/pile_fields/drawing.h"
 #include "coupling/studies/pile_fields/robust.h"
 #include "coupling/studies/pile_fields/topic.h"

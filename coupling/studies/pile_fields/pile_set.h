@@ -12,7 +12,6 @@
 #include "coupling/run/realization_file.h"
 #include "coupling/strain/strain.h"
 #include "coupling/studies/pile_fields/setup.h"
-#include "dem/study/setup.h"
 
 namespace grainfield::coupling {
 

@@ -12,6 +12,7 @@
 #include "coupling/run/study_result.h"
 #include "coupling/studies/pile/keys.h"
 #include "coupling/studies/pile/pile_run.h"
+#include "coupling/studies/pile/simulation.h"
 #include "coupling/studies/pile_fields/drawing.h"
 #include "coupling/studies/pile_fields/keys.h"
 #include "coupling/studies/pile_fields/pile_set.h"
@@ -19,7 +20,6 @@
 #include "coupling/studies/pile_fields/topic.h"
 #include "coupling/studies/pile_fields/topic_result.h"
 #include "dem/snapshot/contact_changes.h"
-#include "dem/study/setup.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -8,10 +8,10 @@
 
 #include "coupling/run/ensemble.h"
 #include "coupling/run/finished_runs.h"
+#include "coupling/studies/point_load/layer_figures.h"
+#include "coupling/studies/point_load/simulation.h"
 #include "dem/snapshot/contact_changes.h"
 #include "dem/snapshot/snapshot.h"
-#include "dem/study/layer_figures.h"
-#include "dem/study/setup.h"
 
 namespace grainfield::coupling {
 namespace {

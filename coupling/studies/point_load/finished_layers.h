@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "coupling/case/case.h"
-#include "dem/study/outlook.h"
-#include "dem/study/run.h"
+#include "dem/run/outlook.h"
+#include "dem/run/run.h"
 
 namespace grainfield::coupling {
 

@@ -3,6 +3,7 @@
 
 #include "coupling/case/declare.h"
 #include "coupling/run/superellipsoid_keys.h"
+#include "coupling/studies/point_load/simulation.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::PointLoadSetup, MEMBER)
 

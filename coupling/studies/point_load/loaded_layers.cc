@@ -8,7 +8,7 @@
 #include "coupling/averaging/base.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/point_load/figures.h"
-#include "dem/study/setup.h"
+#include "coupling/studies/point_load/simulation.h"
 
 namespace grainfield::coupling {
 

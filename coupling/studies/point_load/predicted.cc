@@ -9,7 +9,7 @@
 #include "coupling/elastic_constants/probed.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/study_result.h"
-#include "dem/study/layer_probe.h"
+#include "coupling/studies/point_load/layer_probe.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -20,8 +20,9 @@
 #include "coupling/studies/point_load/loaded_layers.h"
 #include "coupling/studies/point_load/page.h"
 #include "coupling/studies/point_load/predicted.h"
+#include "coupling/studies/point_load/simulation.h"
 #include "coupling/studies/point_load/space.h"
-#include "dem/study/setup.h"
+#include "dem/run/setup.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -9,7 +9,7 @@
 #include "continuum/constants.h"
 #include "continuum/model.h"
 #include "coupling/studies/sample/figures.h"
-#include "dem/study/sample_path.h"
+#include "coupling/studies/sample/simulation/path.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -9,9 +9,9 @@
 #include "coupling/case/study.h"
 #include "coupling/report/report.h"
 #include "coupling/studies/sample/moduli.h"
+#include "coupling/studies/sample/simulation/setup.h"
 #include "coupling/studies/sample/state_table.h"
 #include "coupling/studies/sample/strength.h"
-#include "dem/study/sample_setup.h"
 
 namespace grainfield::coupling {
 

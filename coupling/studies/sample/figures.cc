@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "continuum/constants.h"
-#include "dem/study/sample_path.h"
+#include "coupling/studies/sample/simulation/path.h"
 
 namespace grainfield::coupling {
 namespace {

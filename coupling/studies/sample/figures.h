@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "coupling/output/figure.h"
+#include "coupling/studies/sample/simulation/setup.h"
 #include "coupling/studies/sample/state_table.h"
-#include "dem/study/sample_setup.h"
 
 namespace grainfield::coupling {
 

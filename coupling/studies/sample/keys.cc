@@ -3,9 +3,9 @@
 
 #include "coupling/case/declare.h"
 #include "coupling/run/superellipsoid_keys.h"
+#include "coupling/studies/sample/simulation/grains.h"
+#include "coupling/studies/sample/simulation/setup.h"
 #include "dem/packing/loose.h"
-#include "dem/study/sample_grains.h"
-#include "dem/study/sample_setup.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::SampleSetup, plan.MEMBER)
 

@@ -8,7 +8,7 @@
 #include "coupling/elastic_constants/probed.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/study_result.h"
-#include "dem/study/probe_record.h"
+#include "dem/run/probe_record.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -1,4 +1,5 @@
-// Elastic moduli of a sample from small strains at rest (dem/study/sample_probe.h).
+// Elastic moduli of a sample from small strains at rest
+// (coupling/studies/sample/simulation/probe.h).
 #pragma once
 #include <string>
 #include <vector>

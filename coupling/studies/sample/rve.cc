@@ -14,11 +14,11 @@
 #include "coupling/averaging/points.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/statistics/spread.h"
+#include "coupling/studies/sample/simulation/checks.h"
+#include "coupling/studies/sample/simulation/path.h"
+#include "coupling/studies/sample/simulation/state.h"
+#include "dem/run/common.h"
 #include "dem/snapshot/number.h"
-#include "dem/study/common.h"
-#include "dem/study/sample_checks.h"
-#include "dem/study/sample_path.h"
-#include "dem/study/sample_state.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -9,7 +9,7 @@
 #include "continuum/constants.h"
 #include "coupling/output/figure.h"
 #include "coupling/strain/hull.h"
-#include "dem/study/sample_setup.h"
+#include "coupling/studies/sample/simulation/setup.h"
 
 namespace grainfield::coupling {
 

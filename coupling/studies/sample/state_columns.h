@@ -6,8 +6,8 @@
 
 #include "coupling/structure/coordination_counts.h"
 #include "coupling/structure/tensor_axes.h"
+#include "coupling/studies/sample/simulation/state.h"
 #include "dem/snapshot/snapshot.h"
-#include "dem/study/sample_state.h"
 
 namespace grainfield::coupling {
 
@@ -34,8 +34,9 @@ struct StateFacts {
   double dissipated() const { return in_dashpots + to_friction + to_rolling + to_damping; }
 };
 
-/// Of a snapshot of dem/study/sample.h; `first`: "state_000" of the same realization. Keeps a
-/// pointer to `snapshot`. Throws std::invalid_argument naming an attribute that is missing.
+/// Of a snapshot of coupling/studies/sample/simulation/sample.h; `first`: "state_000" of the same
+/// realization. Keeps a pointer to `snapshot`. Throws std::invalid_argument naming an attribute
+/// that is missing.
 StateFacts state_facts(const dem::Snapshot& snapshot, const dem::Snapshot& first);
 
 /// A column of states.csv.

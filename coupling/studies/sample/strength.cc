@@ -5,7 +5,7 @@
 
 #include "continuum/constants.h"
 #include "coupling/studies/sample/figures.h"
-#include "dem/study/sample_path.h"
+#include "coupling/studies/sample/simulation/path.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "coupling/case/study.h"
+#include "coupling/studies/sample/simulation/setup.h"
 #include "coupling/studies/sample/state_table.h"
-#include "dem/study/sample_setup.h"
 
 namespace grainfield::coupling {
 

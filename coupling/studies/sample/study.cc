@@ -17,13 +17,13 @@
 #include "coupling/studies/sample/moduli.h"
 #include "coupling/studies/sample/page.h"
 #include "coupling/studies/sample/rve_page.h"
+#include "coupling/studies/sample/simulation/path.h"
+#include "coupling/studies/sample/simulation/sample.h"
+#include "coupling/studies/sample/simulation/setup.h"
 #include "coupling/studies/sample/state_table.h"
 #include "coupling/studies/sample/strength.h"
+#include "dem/run/setup.h"
 #include "dem/snapshot/snapshot.h"
-#include "dem/study/sample.h"
-#include "dem/study/sample_path.h"
-#include "dem/study/sample_setup.h"
-#include "dem/study/setup.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -1,13 +1,13 @@
 // Keys of [material] that follow from others, and what is said of the contacts.
 #include <filesystem>
 
-#include "tests/coupling/check_scene.h"
 #include "coupling/case/apply.h"
 #include "coupling/case/material.h"
 #include "coupling/case/shipped_cases.h"
+#include "coupling/studies/point_load/simulation.h"
+#include "coupling/studies/sample/simulation/setup.h"
 #include "dem/laws/material_defaults.h"
-#include "dem/study/sample_setup.h"
-#include "dem/study/setup.h"
+#include "tests/coupling/check_scene.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -9,7 +9,9 @@
 #include "coupling/case/keys.h"
 #include "coupling/observe/setup.h"
 #include "coupling/run/averaging_setup.h"
-#include "dem/study/setup.h"
+#include "coupling/studies/lattice_pile/simulation.h"
+#include "coupling/studies/pile/simulation.h"
+#include "coupling/studies/point_load/simulation.h"
 #include "tests/coupling/check_scene.h"
 
 namespace grainfield::coupling {

@@ -5,6 +5,7 @@
 #include <regex>
 #include <set>
 
+#include "tests/coupling/guide_scene.h"
 #include "tests/coupling/program.h"
 
 namespace grainfield::coupling {
@@ -79,6 +80,22 @@ TEST(Manual, HasAPageForEveryCommandWithEveryOption) {
     }
   }
   EXPECT_GT(found, 100U);
+}
+
+TEST(Manual, PagesOfCommandsAndColumnsAreCurrent) {
+  const Folder folder;
+  ASSERT_EQ(program("manual -o " + (folder / "m")).code, 0);
+  for (const std::string page : {"commands.md", "columns.md"}) {
+    EXPECT_EQ(read_text(test::kDocs + page), read_text(folder / "m/pages/" + page))
+        << "regenerate: grainfield manual -o DIR, then DIR/pages/" << page << " to docs/";
+  }
+  const std::string page = read_text(folder / "m/pages/commands.md");
+  for (const std::string& name : commands()) {
+    EXPECT_THAT(page, HasSubstr("\n## " + name + "\n"));
+    for (const std::string& option : options(name)) {
+      EXPECT_THAT(page.substr(page.find("\n## " + name + "\n")), HasSubstr("`" + option + "`"));
+    }
+  }
 }
 
 TEST(Manual, ManReadsItWithoutAWarning) {

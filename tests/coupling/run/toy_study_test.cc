@@ -14,6 +14,7 @@
 #include "coupling/run/run_case.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/studies/lattice_pile/simulation.h"
 #include "dem/snapshot/contact_changes.h"
 #include "tests/coupling/program.h"
 

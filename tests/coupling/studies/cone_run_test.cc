@@ -16,6 +16,7 @@
 #include "coupling/output/field_io.h"
 #include "coupling/output/tables.h"
 #include "coupling/run/summary_keys.h"
+#include "dem/random/random.h"
 #include "dem/snapshot/snapshot.h"
 #include "tests/coupling/check_scene.h"
 #include "tests/coupling/reliability_process.h"

@@ -9,10 +9,10 @@
 #include "coupling/case/study.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/studies/pile/simulation.h"
 #include "coupling/studies/pile_fields/robust.h"
 #include "coupling/studies/pile_fields/setup.h"
 #include "coupling/studies/pile_fields/topic.h"
-#include "dem/study/setup.h"
 #include "tests/coupling/heap_scene.h"
 #include "tests/coupling/program.h"
 

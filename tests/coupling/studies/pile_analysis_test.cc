@@ -19,7 +19,6 @@
 #include "coupling/statistics/spread.h"
 #include "coupling/studies/pile/pile_ensemble.h"
 #include "coupling/studies/pile/study.h"
-#include "dem/study/setup.h"
 #include "tests/coupling/heap_scene.h"
 #include "tests/coupling/program.h"
 

@@ -1,5 +1,5 @@
 // The servo of a cell against a medium with a modulus and a viscosity.
-#include "dem/study/cell_servo.h"
+#include "dem/run/cell_servo.h"
 
 #include <gtest/gtest.h>
 

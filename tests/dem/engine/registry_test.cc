@@ -7,9 +7,11 @@
 #include <cmath>
 
 #include "dem/engine/combine.h"
+#include "dem/laws/material_setup.h"
+#include "dem/motion/motion_setup.h"
 #include "dem/motion/registry.h"
+#include "dem/run/common.h"
 #include "dem/shapes/disk_store.h"
-#include "dem/study/common.h"
 
 namespace grainfield::dem {
 namespace {

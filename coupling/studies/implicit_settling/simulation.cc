@@ -1,0 +1,262 @@
+#include "coupling/studies/implicit_settling/simulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "dem/implicit/soft_disks.h"
+#include "dem/laws/contact.h"
+#include "dem/run/archive.h"
+#include "dem/run/fingerprint.h"
+#include "dem/run/soft_snapshot.h"
+#include "dem/snapshot/contact_changes.h"
+
+namespace grainfield::dem {
+
+double ImplicitSettlingSetup::mass() const {
+  return density * std::numbers::pi * lattice.radius * lattice.radius;
+}
+double ImplicitSettlingSetup::weight() const { return mass() * gravity; }
+double ImplicitSettlingSetup::stiffness() const {
+  return weight() / (softness * 2 * lattice.radius);
+}
+double ImplicitSettlingSetup::time_step() const {
+  return step * 0.1 * std::numbers::pi * std::sqrt(mass() / stiffness());
+}
+double ImplicitSettlingSetup::time_unit() const { return std::sqrt(2 * lattice.radius / gravity); }
+
+namespace {
+
+// Rest is judged every so many steps.
+constexpr long kJudgeEvery = 20;
+// Of a disk with its contacts and their part of the factors: about.
+constexpr double kBytesOfSoftDisk = 8000;
+// A contact whose normal rises less than this is one of a row.
+constexpr double kRise = 0.5;
+
+// Columns.
+constexpr std::size_t kUnbalanced = 7, kSpread = 9;
+
+using SettlingRecord = std::array<double, std::size(kSettlingColumns)>;
+
+SoftScene settling_scene(const ImplicitSettlingSetup& s) {
+  const double dashpot = std::sqrt(s.mass() * s.stiffness());
+  SoftScene out;
+  out.gravity = {0, -s.gravity};
+  out.grains.stiffness = s.stiffness();
+  out.grains.damping = s.damping * dashpot;
+  if (s.friction != "none") {
+    out.grains.friction = s.friction == "viscous" ? SoftFriction::viscous : SoftFriction::coulomb;
+    out.grains.slip_damping = s.slip_damping * dashpot;
+    out.grains.rolling_friction = s.rolling_friction;
+    out.grains.coulomb = s.coulomb;
+    out.grains.tangential_stiffness = s.tangential_ratio * s.stiffness();
+  }
+  SoftLaw floor = out.grains;
+  floor.static_friction = s.static_friction;
+  floor.well = s.well * 2 * s.lattice.radius;
+  out.walls = {{{0, 0}, {0, 1}, floor}};
+  return out;
+}
+
+std::vector<Body<2>> settling_disks(const ImplicitSettlingSetup& s) {
+  std::vector<Body<2>> out;
+  for (const NewGrain& g : lattice_pile_grains(s.lattice, s.density)) {
+    Body<2> b;
+    b.position = {g.x, g.y};
+    b.radius = g.radius;
+    b.inverse_mass = 1 / s.mass();
+    if (g.rotates || s.base_spins) b.inverse_inertia = 2 * b.inverse_mass / (g.radius * g.radius);
+    out.push_back(b);
+  }
+  return out;
+}
+
+ImplicitSettings settling_steps(const ImplicitSettlingSetup& s) {
+  ImplicitSettings out;
+  out.scheme = s.scheme == "bdf2" ? ImplicitScheme::bdf2 : ImplicitScheme::conserving;
+  out.time_step = s.time_step();
+  out.relaxation = s.relaxation;
+  out.tolerance = s.tolerance;
+  out.max_iterations = s.max_iterations;
+  return out;
+}
+
+class ImplicitSettlingRun final : public ArchivedRun {
+ public:
+  ImplicitSettlingRun(const ImplicitSettlingSetup& setup, std::uint64_t seed)
+      : setup_(setup),
+        seed_(seed),
+        disks_(settling_scene(setup), settling_disks(setup), settling_steps(setup)) {
+    start_ = disks_.energy().total();
+    base_ = setup.lattice.base_grains;
+    last_step_ = std::max(1L, std::lround(setup.max_time * setup.time_unit() / setup.time_step()));
+    every_ = std::max(1L, last_step_ / setup.records);
+    record();
+  }
+
+  void advance(long steps) override {
+    try {
+      // A step that is halved again and again counts by its parts, so that this returns in time.
+      for (; steps > 0 && !done_; --steps) {
+        if (!disks_.try_part()) continue;
+        const long now = disks_.tally().steps;
+        if (now % every_ == 0) record();
+        const bool rests = now % kJudgeEvery == 0 && disks_.rest().ratio < setup_.rest;
+        if (!rests && now < last_step_) continue;
+        if (now % every_ != 0) record();
+        at_rest_ = rests;
+        done_ = true;
+      }
+    } catch (const ComputationFailed& e) {
+      throw ComputationFailed(fmt::format("{} (settling.step, settling.max_iterations)", e.what()));
+    }
+  }
+  bool done() const override { return done_; }
+  Progress progress() const override {
+    Progress p;
+    p.phase = done_ ? "done" : "settle";
+    p.fraction = done_ ? 1 : disks_.time() / (last_step_ * setup_.time_step());
+    p.simulated_time = disks_.time();
+    p.steps = disks_.tally().steps;
+    p.grains = p.awake = static_cast<int>(disks_.bodies().size());
+    p.kinetic_energy = disks_.energy().kinetic;
+    p.unbalanced_force_ratio = disks_.rest().ratio;
+    return p;
+  }
+  RunResult result() const override {
+    RunResult out;
+    const ImplicitTally& t = disks_.tally();
+    const Snapshot pile = snapshot();
+    double most = 0;
+    for (const SettlingRecord& r : records_) most = std::max(most, std::fabs(r[kUnbalanced]));
+    auto& f = out.figures;
+    f["dem.grains"] = static_cast<double>(disks_.bodies().size());
+    f["dem.contacts"] = static_cast<double>(pile.contacts.size());
+    f["dem.steps"] = static_cast<double>(t.steps);
+    f["dem.time_step"] = setup_.time_step();
+    f["dem.unbalanced_force_ratio"] = disks_.rest().ratio;
+    f["base.weight_ratio"] =
+        base_force(pile).y() / (static_cast<double>(disks_.bodies().size()) * setup_.weight());
+    f["settling.at_rest"] = at_rest_ ? 1 : 0;
+    f["settling.time"] = disks_.time() / setup_.time_unit();
+    f["settling.iterations"] = static_cast<double>(t.iterations) / static_cast<double>(t.solves);
+    f["settling.most_iterations"] = t.most_iterations;
+    f["settling.halved"] = static_cast<double>(t.halved);
+    f["settling.balance_error"] = most;
+    f["settling.spread"] = records_.back()[kSpread];
+    f["settling.spread_speed"] = at_rest_ ? 0 : last_speed();
+    double rows = 0;
+    for (const Contact& c : pile.contacts) rows += c.j >= 0 && std::fabs(c.normal.y()) < kRise;
+    f["settling.row_contacts"] = rows;
+    out.snapshots = {{"pile", pile}};
+    return out;
+  }
+
+ private:
+  double unit() const { return setup_.weight() * 2 * setup_.lattice.radius; }
+  void record() {
+    const SoftEnergy e = disks_.energy();
+    const SoftLosses& lost = disks_.losses();
+    const ImplicitTally& t = disks_.tally();
+    const long solves = t.solves - solves_;
+    const double width = disks_.bodies()[base_ - 1].position.x() - disks_.bodies()[0].position.x();
+    records_.push_back(
+        {disks_.time() / setup_.time_unit(), e.kinetic / unit(), (e.elastic + e.springs) / unit(),
+         lost.normal / unit(), lost.tangential / unit(), lost.well / unit(), lost.scheme / unit(),
+         (e.total() + lost.total() - start_) / unit(),
+         solves > 0 ? static_cast<double>(t.iterations - iterations_) / solves : 0,
+         (width - (base_ - 1) * lattice_spacing(setup_.lattice)) / (2 * setup_.lattice.radius)});
+    solves_ = t.solves;
+    iterations_ = t.iterations;
+  }
+  /// d/sqrt(d/g), of the last tenth of the records.
+  double last_speed() const {
+    const std::size_t n = records_.size(), from = n - 1 - std::max<std::size_t>(1, n / 10);
+    const SettlingRecord &a = records_[n > 1 ? from : 0], &b = records_.back();
+    return b[0] > a[0] ? (b[kSpread] - a[kSpread]) / (b[0] - a[0]) : 0;
+  }
+
+  Snapshot snapshot() const {
+    Snapshot out;
+    out.time = disks_.time();
+    out.gravity = {0, -setup_.gravity, 0};
+    out.grains = grains_of(disks_.bodies(), disks_.angles());
+    Wall floor;
+    floor.name = "floor";
+    for (const SoftTouch& t : disks_.touches()) {
+      Contact c = contact_of(t, out.grains);
+      // What they hold at most at rest: the ground's wells beside Coulomb's friction.
+      c.friction = setup_.friction == "coulomb" ? setup_.coulomb : 0;
+      if (t.j < 0) c.friction += setup_.static_friction;
+      c.sliding = c.friction > 0 &&
+                  std::fabs(t.tangential) >= c.friction * t.repulsion * (1 - kSlidingMargin);
+      if (t.j < 0) floor.force -= c.force;
+      out.contacts.push_back(c);
+    }
+    out.walls = {floor};
+    out.attributes["state"] = "pile";
+    out.attributes["seed"] = fmt::format("{}", seed_);
+    out.attributes["packing"] = "lattice";
+    keep_columns("settling", kSettlingColumns, records_, out);
+    return out;
+  }
+
+  std::string fingerprint() const override {
+    return fmt::format("implicit settling {} {}", fingerprint_of(setup_), seed_);
+  }
+  void visit(Archive& archive) override {
+    std::string image = archive.is_reading() ? std::string() : disks_.image();
+    archive(image);
+    archive(records_);
+    archive(solves_);
+    archive(iterations_);
+    archive(at_rest_);
+    archive(done_);
+    archive.require(!records_.empty());
+    if (archive.is_reading()) disks_.restore(image);
+  }
+
+  ImplicitSettlingSetup setup_;
+  std::uint64_t seed_;
+  SoftDisks disks_;
+  double start_ = 0;  // energy, J
+  int base_ = 0;
+  long last_step_ = 1, every_ = 1;
+  std::vector<SettlingRecord> records_;
+  long solves_ = 0, iterations_ = 0;  // at the last record
+  bool at_rest_ = false, done_ = false;
+};
+
+void check_settling(const ImplicitSettlingSetup& s) {
+  check_lattice(s.lattice);
+  if (s.static_friction > 0 && !(s.well > 0)) {
+    throw std::invalid_argument(
+        fmt::format("settling.well: found {:g} with settling.static_friction {:g}, allowed: above "
+                    "0",
+                    s.well, s.static_friction));
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Run> make_implicit_settling_run(const ImplicitSettlingSetup& setup,
+                                                std::uint64_t seed) {
+  check_settling(setup);
+  return std::make_unique<ImplicitSettlingRun>(setup, seed);
+}
+
+Outlook foresee_implicit_settling(const ImplicitSettlingSetup& setup) {
+  check_settling(setup);
+  Outlook out;
+  for (const int row : lattice_rows(setup.lattice)) out.grains += row;
+  out.bytes = kBytesOfSoftDisk * out.grains;
+  out.bytes_key = "lattice.base_grains";
+  out.time_step = setup.time_step();
+  return out;
+}
+
+}  // namespace grainfield::dem

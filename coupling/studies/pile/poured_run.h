@@ -1,0 +1,94 @@
+// The run of a pile: its phases are in pile.cc, its sources in pile_pour.cc, progress, checkpoints
+// and results in pile_state.cc. Internal to this folder, and to the benchmark of sleeping.
+#pragma once
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coupling/studies/pile/gravity_changes.h"
+#include "coupling/studies/pile/simulation.h"
+#include "dem/heap/grain_family.h"
+#include "dem/heap/source.h"
+#include "dem/random/random.h"
+#include "dem/run/phases.h"
+
+namespace grainfield::dem {
+
+/// Share of a run with changes of gravity at which the pile is at rest, for the progress.
+inline constexpr double kEndOfRest = 0.85;
+/// While grains are poured their motion is read every so many steps, to count those awake.
+inline constexpr long kSampleEvery = 3000;
+
+enum class PilePhase : int { pour, settle, rest, change, done };
+
+class PileRun final : public ArchivedRun {
+ public:
+  PileRun(const PileSetup& setup, std::uint64_t seed, int threads);
+
+  void advance(long steps) override;
+  bool done() const override { return phases_.done(); }
+  Progress progress() const override;
+  RunResult result() const override;
+
+  /// No grain sleeps from now on: what sleeping saves is measured so.
+  void keep_awake() { engine_->set_sleep(false); }
+  double time_step() const { return settings_.time_step; }
+
+ private:
+  // A grain out of the funnel on its way down.
+  struct Flight {
+    long step = 0;  // at which it joins the simulation
+    int grain = 0;
+    int pad = 0;
+    double x = 0;
+  };
+
+  void visit(Archive& archive) override;
+  void draw();
+  std::unique_ptr<Engine> empty_engine() const;
+  void add_floor_grains();
+  void enter(PilePhase phase);
+  long next_event() const;
+  void act();
+  void pour_point();
+  void pour_line();
+  void release_grain();
+  bool join(const Flight& flight);
+  void drop_layer();
+  void end_pour();
+  void settle();
+  void rest();
+  void change(long steps);
+  bool settled(int grains) const;
+  double in_phase() const { return static_cast<double>(phases_.steps()) * engine_->time_step(); }
+  Snapshot named(Snapshot snapshot, const std::string& state) const;
+  std::string fingerprint() const override;
+
+  PileSetup setup_;
+  std::uint64_t seed_;
+  Random random_;
+  std::vector<ShapedGrain> grains_, floor_;  // drawn before anything moves
+  double largest_diameter_ = 0, mean_diameter_ = 0;
+  EngineSettings settings_;
+  std::optional<PointSource> point_;
+  std::unique_ptr<Engine> engine_;
+
+  Phases<PilePhase> phases_;
+  int poured_ = 0;  // released by the point source, dropped by the line source
+  double top_ = 0;  // of the grains at rest when the last one joined, m
+  std::deque<Flight> in_flight_;
+  Stretch line_;          // of the last layer
+  long layer_start_ = 0;  // step within the phase
+  int layer_grains_ = 0;
+  double awake_sum_ = 0;
+  long awake_samples_ = 0;
+  double pour_time_ = 0;
+  Diagnostics at_pile_;                  // when the pile was at rest
+  std::optional<Snapshot> poured_pile_;  // before the last relaxation
+  std::optional<Snapshot> pile_;
+  std::optional<GravityChanges> changes_;
+};
+
+}  // namespace grainfield::dem

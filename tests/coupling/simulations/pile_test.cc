@@ -1,0 +1,220 @@
+// The pile study: balance, restart to the same bits, any number of threads, changes of gravity.
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "coupling/studies/pile/simulation.h"
+#include "dem/random/random.h"
+#include "dem/snapshot/contact_changes.h"
+#include "tests/coupling/pile_scene.h"
+#include "tests/dem/imbalance.h"
+
+namespace grainfield::dem {
+namespace {
+
+TEST(Pile, BaseCarriesTheWeight) {
+  for (const char* shape : {"disk", "rand1"}) {
+    for (const char* source : {"point", "line"}) {
+      const PileSetup s = small_pile(source, shape);
+      const auto run = make_pile_run(s, 3, 1);
+      finish(*run);
+      const RunResult r = run->result();
+      EXPECT_NEAR(r.figures.at("base.weight_ratio"), 1, 1e-3) << shape << " " << source;
+      expect_balanced(r.snapshots[0].second, 1e-3, std::string(shape) + " " + source);
+      EXPECT_EQ(r.figures.at("dem.grains") + r.figures.at("pile.grains_not_poured"), 80);
+      ASSERT_EQ(r.snapshots.size(), 1u);
+      EXPECT_EQ(r.snapshots[0].first, "pile");
+      EXPECT_EQ(r.snapshots[0].second.attributes.at("source"), source);
+      EXPECT_GT(r.figures.at("pile.height"), 5 * s.shape.radius);
+      const Progress p = run->progress();
+      EXPECT_EQ(p.fraction, 1);
+      EXPECT_EQ(p.phase, "done");
+    }
+  }
+}
+
+TEST(Pile, FunnelMovesAndDropsOneGrainPerInterval) {
+  PileSetup s = small_pile("point", "disk");
+  s.source.move = 1.5;
+  const auto run = make_pile_run(s, 3, 1);
+  finish(*run);
+  const RunResult r = run->result();
+  EXPECT_GT(r.figures.at("pile.pour_time"), 79 * s.source.interval);
+  EXPECT_LT(r.figures.at("pile.pour_time"), 79 * s.source.interval + 0.5);
+  const Snapshot& pile = r.snapshots[0].second;
+  std::size_t first = 0;
+  while (pile.grains[first].fixed) ++first;
+  // The early grains lie further to the left than the late ones.
+  double early = 0, late = 0;
+  for (int k = 0; k < 20; ++k) {
+    early += pile.grains[first + k].position.x() / 20;
+    late += pile.grains[pile.grains.size() - 1 - k].position.x() / 20;
+  }
+  EXPECT_LT(early, -0.2);
+  EXPECT_GT(late, 0.2);
+}
+
+// Same figures, where nan equals nan.
+bool same_figures(const RunResult& a, const RunResult& b) {
+  if (a.figures.size() != b.figures.size()) return false;
+  for (const auto& [key, value] : a.figures) {
+    const double other = b.figures.at(key);
+    if (value != other && !(std::isnan(value) && std::isnan(other))) return false;
+  }
+  return true;
+}
+
+PileSetup with_changes(const std::string& source, const std::string& shape) {
+  PileSetup s = small_pile(source, shape);
+  s.source.grains = 20;
+  s.source.interval = 0.11;
+  s.source.length = 0.7;
+  s.source.height = 0.6;
+  s.rest.unbalanced_force_ratio = 1e-2;
+  s.rest.kinetic_to_elastic_energy = 1e-3;
+  s.change.method = "damped";
+  s.change.gravity = {5, 8.829};
+  s.change.ramp_time = 0.05;
+  return s;
+}
+
+TEST(Pile, SameBitsOnAnyNumberOfThreads) {
+  for (const char* shape : {"rand1"}) {
+    for (const char* source : {"point", "line"}) {
+      RunResult first;
+      for (const int threads : {1, 2, 3}) {
+        const auto run = make_pile_run(with_changes(source, shape), 5, threads);
+        finish(*run);
+        const RunResult r = run->result();
+        ASSERT_EQ(r.snapshots.size(), 3u);
+        if (threads == 1) first = r;
+        for (std::size_t k = 0; k < 3; ++k) {
+          EXPECT_TRUE(same(r.snapshots[k].second, first.snapshots[k].second))
+              << shape << " " << source << " " << threads << " threads";
+        }
+        EXPECT_TRUE(same_figures(r, first));
+      }
+    }
+  }
+}
+
+TEST(Pile, ResumesToTheSameBitsFromAnyStep) {
+  const std::string file = (std::filesystem::temp_directory_path() /
+                            ("grainfield_pile_" + std::to_string(getpid()) + ".h5"))
+                               .string();
+  Random random(1);
+  for (const char* shape : {"disk", "rand1"}) {
+    for (const char* source : {"point", "line"}) {
+      const PileSetup s = with_changes(source, shape);
+      const auto whole = make_pile_run(s, 9, 1);
+      long total = 0;
+      while (!whole->done()) {
+        whole->advance(1000);
+        total += 1000;
+      }
+      const RunResult expected = whole->result();
+      for (int trial = 0; trial < 3; ++trial) {
+        const long stop = static_cast<long>(random.uniform() * static_cast<double>(total));
+        {
+          const auto first = make_pile_run(s, 9, 1 + trial % 2);
+          first->advance(stop);
+          first->save(file);
+        }
+        const auto second = make_pile_run(s, 9, 2 - trial % 2);
+        second->restore(file);
+        finish(*second);
+        const RunResult got = second->result();
+        ASSERT_EQ(got.snapshots.size(), expected.snapshots.size());
+        for (std::size_t k = 0; k < got.snapshots.size(); ++k) {
+          EXPECT_TRUE(same(got.snapshots[k].second, expected.snapshots[k].second))
+              << shape << " " << source << ": " << got.snapshots[k].first << ", stopped at "
+              << stop;
+        }
+        EXPECT_TRUE(same_figures(got, expected)) << "stopped at " << stop;
+      }
+      PileSetup changed = s;
+      changed.source.spread = 0.25;
+      EXPECT_THROW(make_pile_run(changed, 9, 1)->restore(file), std::invalid_argument);
+      EXPECT_THROW(make_pile_run(s, 10, 1)->restore(file), std::invalid_argument);
+      std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+      EXPECT_THROW(make_pile_run(s, 9, 1)->restore(file), std::invalid_argument);
+    }
+  }
+  std::filesystem::remove(file);
+}
+
+TEST(Pile, EveryChangeOfGravityStartsFromThePile) {
+  PileSetup s = with_changes("point", "disk");
+  // The base carries the weight but for the grains' resultants: 20 of them, each this share of a
+  // contact force of a few weights.
+  s.rest.unbalanced_force_ratio = 3e-4;
+  s.rest.kinetic_to_elastic_energy = 1e-4;
+  const auto both = make_pile_run(s, 2, 1);
+  finish(*both);
+  s.change.gravity = {8.829};
+  const auto one = make_pile_run(s, 2, 1);
+  finish(*one);
+  const RunResult r = both->result();
+  ASSERT_EQ(r.snapshots[2].first, "gravity_8.829");
+  EXPECT_TRUE(same(r.snapshots[2].second, one->result().snapshots[1].second));
+  const double weight = base_force(r.snapshots[0].second).y();
+  EXPECT_EQ(r.snapshots[1].second.gravity.y(), -5);
+  EXPECT_NEAR(base_force(r.snapshots[1].second).y() / weight, 5 / 9.81, 1e-3);
+  EXPECT_NEAR(base_force(r.snapshots[2].second).y() / weight, 0.9, 1e-3);
+  EXPECT_GT(r.figures.at("change.gravity_5.max_displacement_over_radius"), 1e-6);
+}
+
+// The quasi-static solver against slow damped dynamics: where no contact rearranges both find the
+// same state.
+TEST(Pile, NewtonAgreesWithDampedDynamics) {
+  PileSetup s = with_changes("line", "rand1");
+  s.change.gravity = {9.7};
+  s.change.ramp_time = 0.3;
+  s.rest.unbalanced_force_ratio = 1e-7;
+  s.rest.kinetic_to_elastic_energy = 1e-13;
+  const auto damped = make_pile_run(s, 4, 1);
+  finish(*damped);
+  s.change.method = "newton";
+  const auto newton = make_pile_run(s, 4, 1);
+  finish(*newton);
+  const RunResult a = damped->result(), b = newton->result();
+  ASSERT_EQ(b.snapshots.size(), 2u);
+  EXPECT_EQ(b.snapshots[1].first, "gravity_9.7");
+  EXPECT_EQ(b.snapshots[1].second.attributes.at("state"), "gravity_9.7");
+  expect_balanced(b.snapshots[1].second, 1e-8);
+  ASSERT_TRUE(same(a.snapshots[0].second, b.snapshots[0].second));
+  ASSERT_EQ(a.figures.at("change.gravity_9.7.contacts_lost"), 0);
+  double difference = 0, moved = 0;
+  for (std::size_t k = 0; k < a.snapshots[0].second.grains.size(); ++k) {
+    const Vec3 before = a.snapshots[0].second.grains[k].position;
+    moved += (a.snapshots[1].second.grains[k].position - before).squaredNorm();
+    difference +=
+        (a.snapshots[1].second.grains[k].position - b.snapshots[1].second.grains[k].position)
+            .squaredNorm();
+  }
+  EXPECT_LT(std::sqrt(difference / moved), 0.01);
+}
+
+// A solve that is told to stop leaves the run as it was, and the run goes on to the same bits.
+TEST(Pile, NewtonStopsWhenToldTo) {
+  PileSetup s = with_changes("line", "rand1");
+  s.change.gravity = {9.7};
+  s.change.method = "newton";
+  const auto whole = make_pile_run(s, 4, 1), stopped = make_pile_run(s, 4, 1);
+  finish(*whole);
+  int asked = 0;
+  stopped->set_watch([&](const Progress& p) {
+    EXPECT_EQ(p.phase, "gravity_9.7");
+    return ++asked > 3;
+  });
+  for (int k = 0; k < 100000 && asked < 3; ++k) stopped->advance(1000);
+  ASSERT_EQ(asked, 3);
+  EXPECT_FALSE(stopped->done());
+  finish(*stopped);
+  EXPECT_TRUE(same(whole->result().snapshots[1].second, stopped->result().snapshots[1].second));
+}
+
+}  // namespace
+}  // namespace grainfield::dem
