@@ -50,27 +50,26 @@ bool begin_alike(const std::string& a, const std::string& b) {
   return 3 * (ends.first - a.begin()) >= 2 * static_cast<long>(std::min(a.size(), b.size()));
 }
 
-void check_choice(const Key& key, const Assignment& a, const std::string& value) {
-  if (key.choices.empty() ||
-      std::find(key.choices.begin(), key.choices.end(), value) != key.choices.end()) {
-    return;
-  }
-  if (key.beyond != nullptr) {
-    const std::optional<std::string> why = key.beyond(value);
+void check_choice(const Key& key, const Assignment& a, const std::string& value,
+                  const std::string& study) {
+  const std::vector<std::string>& choices = choices_of(key, study);
+  if (choices.empty() || std::find(choices.begin(), choices.end(), value) != choices.end()) return;
+  const std::string all = allowed(key, study);
+  if (const auto beyond = beyond_of(key, study)) {
+    const std::optional<std::string> why = beyond(value);
     if (why && why->empty()) return;
     if (why) reject(a, key.path(), *why);
   }
   if (const std::string why = of_three_dimensions(key, value); !why.empty()) {
-    reject(a, key.path(), fmt::format("found \"{}\", allowed: {}; {}", value, allowed(key), why));
+    reject(a, key.path(), fmt::format("found \"{}\", allowed: {}; {}", value, all, why));
   }
   if (const std::string keys = numbers_of(key); !keys.empty() && dem::parse_number(value)) {
-    reject(
-        a, key.path(),
-        fmt::format("found \"{}\", allowed: {}; a number goes into {}", value, allowed(key), keys));
+    reject(a, key.path(),
+           fmt::format("found \"{}\", allowed: {}; a number goes into {}", value, all, keys));
   }
   reject(a, key.path(),
-         fmt::format("found \"{}\", allowed: {}; did you mean {}?", value, allowed(key),
-                     continuum::nearest(value, key.choices)));
+         fmt::format("found \"{}\", allowed: {}; did you mean {}?", value, all,
+                     continuum::nearest(value, choices)));
 }
 
 // A number with something behind it that is no unit, such as "4 mn" or "4mm".
@@ -128,12 +127,13 @@ double number(const Key& key, const Assignment& a, const Scalar& scalar) {
   return value;
 }
 
-std::string word(const Key& key, const Assignment& a, const Scalar& scalar) {
+std::string word(const Key& key, const Assignment& a, const Scalar& scalar,
+                 const std::string& study) {
   // A sweep's values are of its key's type; on the command line words need no quotes.
   const bool any = key.path() == "sweep.values" || a.from_command_line();
   if (!any && !std::holds_alternative<std::string>(scalar)) wrong_type(key, a);
   const std::string value = scalar_text(scalar);
-  check_choice(key, a, value);
+  check_choice(key, a, value, study);
   return value;
 }
 
@@ -149,7 +149,7 @@ void set(const Key& key, const Assignment& a, Case& value) {
           for (const auto& item : a.items) held.push_back(number(key, a, item));
         } else if constexpr (std::is_same_v<T, std::vector<std::string>>) {
           held.clear();
-          for (const auto& item : a.items) held.push_back(word(key, a, item));
+          for (const auto& item : a.items) held.push_back(word(key, a, item, value.study));
         } else {
           if (a.list) wrong_type(key, a);
           const Scalar& item = a.items.front();
@@ -157,7 +157,7 @@ void set(const Key& key, const Assignment& a, Case& value) {
             held = a.from_command_line() && key.choices.empty() &&
                            !std::holds_alternative<std::string>(item)
                        ? a.text
-                       : word(key, a, item);
+                       : word(key, a, item, value.study);
           } else if constexpr (std::is_same_v<T, bool>) {
             if (!std::holds_alternative<bool>(item)) wrong_type(key, a);
             held = std::get<bool>(item);

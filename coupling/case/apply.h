@@ -28,8 +28,8 @@ Assignment written(const Draft& draft, const std::string& path);
 /// name), a wrong type or a value out of range.
 void apply(Draft& draft, const Assignment& assignment);
 
-/// Adds the mistakes of single keys and of tables of models, of those that apply() took: without meaning
-/// for the study, unknown models and parameters.
+/// Adds the mistakes of single keys and of tables of models, of those that apply() took: without
+/// meaning for the study, unknown models and parameters.
 void check_keys(const Draft& draft, MistakeList& mistakes);
 
 /// What fits no single key: sections of another study, model names and parameters, sweep values,

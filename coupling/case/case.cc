@@ -36,29 +36,55 @@ bool names_key(const std::vector<Assignment>& list, const std::string& path) {
   return std::any_of(list.begin(), list.end(), [&](const auto& a) { return a.path == path; });
 }
 
-// A study's former name becomes its present one and the keys that it stood for, where none of the
-// lists sets them.
+// SECTION.KEY, or SECTION alone, in the section's present name: also within a variant.
+void rename_section(const std::string& former, const std::string& now, std::string& path) {
+  std::size_t at = 0;
+  if (path.starts_with("variant.")) at = path.find('.', std::string_view("variant.").size()) + 1;
+  const std::size_t end = std::min(path.find('.', at), path.size());
+  if (path.compare(at, end - at, former) == 0) path.replace(at, former.size(), now);
+}
+
+// A study's former name becomes its present one, with the sections and keys that it stood for.
+// `lists` in their order: keys of the later ones count.
 void take_former_names(const std::vector<std::vector<Assignment>*>& lists) {
-  for (std::vector<Assignment>* list : lists) {
-    std::vector<Assignment> meant;
-    for (Assignment& a : *list) {
-      if (a.path != "study" || a.list || a.items.size() != 1) continue;
-      for (const Study& study : studies()) {
-        for (const FormerName& former : study.former) {
-          if (scalar_text(a.items.front()) != former.name) continue;
-          a.items = {study.name};
-          for (const std::string& text : former.keys) {
-            meant.push_back(parse_override(text));
-            meant.back().origin = a.origin;
+  const auto is_named = [](const Assignment& a, const FormerName& former) {
+    return a.path == "study" && !a.list && a.items.size() == 1 &&
+           scalar_text(a.items.front()) == former.name;
+  };
+  for (const Study& study : studies()) {
+    for (const FormerName& former : study.former) {
+      const auto where = std::find_if(lists.begin(), lists.end(), [&](const auto* list) {
+        return std::any_of(list->begin(), list->end(),
+                           [&](const Assignment& a) { return is_named(a, former); });
+      });
+      if (where == lists.end()) continue;
+      std::string origin;
+      for (std::vector<Assignment>* list : lists) {
+        for (Assignment& a : *list) {
+          if (is_named(a, former)) {
+            a.items = {study.name};
+            if (origin.empty()) origin = a.origin;
+          }
+          for (const auto& [old, now] : former.sections) {
+            rename_section(old, now, a.path);
+            if (a.path != "sweep.key" || a.items.size() != 1) continue;
+            std::string swept = scalar_text(a.items.front());
+            rename_section(old, now, swept);
+            a.items = {swept};
           }
         }
       }
+      std::vector<Assignment> meant;
+      for (const std::string& text : former.keys) {
+        Assignment key = parse_override(text);
+        key.origin = origin;
+        if (std::none_of(lists.begin(), where + 1,
+                         [&](const auto* list) { return names_key(*list, key.path); })) {
+          meant.push_back(std::move(key));
+        }
+      }
+      (*where)->insert((*where)->end(), meant.begin(), meant.end());
     }
-    std::erase_if(meant, [&](const Assignment& m) {
-      return std::any_of(lists.begin(), lists.end(),
-                         [&](const auto* other) { return names_key(*other, m.path); });
-    });
-    list->insert(list->end(), meant.begin(), meant.end());
   }
 }
 
@@ -151,7 +177,7 @@ std::string write_case(const Case& value) {
     }
     std::string remark = key.unit == "-" ? "" : key.unit + "; ";
     remark += key.meaning;
-    if (!key.choices.empty()) remark = allowed(key) + "; " + remark;
+    if (!key.choices.empty()) remark = allowed(key, value.study) + "; " + remark;
     // A written-out case says what holds: keys without effect are there for those who look.
     const bool no_effect = is_without_effect(key, value);
     if (no_effect) remark = fmt::format("only with {}; {}", condition(key), remark);

@@ -130,6 +130,15 @@ void choose_models(Draft& draft) {
   const Assignment where = written(draft, "compare.models");
   Case& value = draft.value;
   value.models.clear();
+  const ModelsElsewhere& instead = study_of(value).models_elsewhere;
+  const bool elsewhere = instead.named != nullptr && instead.named(value);
+  if (elsewhere && !value.given.contains("compare.models")) model_names(value).clear();
+  if (elsewhere && !model_names(value).empty()) {
+    reject(where, "compare.models",
+           fmt::format("found \"{}\", allowed: none with {}; there NAME:p=0.3 gives a model its "
+                       "constants",
+                       model_names(value).front(), instead.key));
+  }
   std::map<std::string, std::string> seen;  // in small letters
   for (const auto& label : model_names(value)) {
     const auto [other, fresh] = seen.emplace(boost::algorithm::to_lower_copy(label), label);
@@ -163,7 +172,7 @@ void choose_models(Draft& draft) {
     }
     value.models.push_back(std::move(choice));
   }
-  if (value.models.empty() && !study_of(value).models_optional)
+  if (value.models.empty() && !elsewhere && !study_of(value).models_optional)
     reject(where, "compare.models", "found no model, expected one or more");
 }
 

@@ -141,16 +141,52 @@ bool is_unmet(const Need& need, const Case& value) {
       other.where);
 }
 
+Key& key_of(const std::string& path, const Study& study, std::vector<Key>& list) {
+  const auto key =
+      std::find_if(list.begin(), list.end(), [&](const Key& k) { return k.path() == path; });
+  if (key == list.end()) {
+    throw std::logic_error(fmt::format("study {}: no key {}", study.name, path));
+  }
+  return *key;
+}
+
 // Those of a study come before the key's own.
 void add_needs(const Study& study, std::vector<Key>& list) {
   for (const OwnNeed& own : study.needs) {
-    const auto key =
-        std::find_if(list.begin(), list.end(), [&](const Key& k) { return k.path() == own.path; });
-    if (key == list.end()) {
-      throw std::logic_error(fmt::format("study {}: no key {}", study.name, own.path));
-    }
-    key->needs.insert(key->needs.begin(), Need{own.key, own.values});
+    Key& key = key_of(own.path, study, list);
+    key.needs.insert(key.needs.begin(), Need{own.key, own.values});
   }
+}
+
+void add_words(const Study& study, std::vector<Key>& list) {
+  for (const OwnWords& own : study.words) {
+    std::vector<std::string>& all = key_of(own.path, study, list).choices;
+    for (const std::string& word : own.choices) {
+      if (std::find(all.begin(), all.end(), word) == all.end()) all.push_back(word);
+    }
+  }
+}
+
+// Null where the study has the key's own words.
+const OwnWords* own_words(const Key& key, const std::string& study) {
+  const Study* known = find_study(study);
+  if (known == nullptr) return nullptr;
+  for (const OwnWords& own : known->words) {
+    if (own.path == key.path()) return &own;
+  }
+  return nullptr;
+}
+
+// What a key means, of one study ("": of all) with what it adds.
+std::string meaning_of(const Key& key, const std::string& study) {
+  std::string out = key.meaning;
+  for (const Study& one : studies()) {
+    if (!study.empty() && one.name != study) continue;
+    const OwnWords* own = own_words(key, one.name);
+    if (own == nullptr || own->meaning.empty()) continue;
+    out += (study.empty() ? "; " + one.name + ": " : ": ") + own->meaning;
+  }
+  return out;
 }
 
 // What stands before a key's meaning: for which studies and with which choices it has an effect.
@@ -217,7 +253,9 @@ std::string key_lines(const Key& key, const Study* study) {
   const std::string before =
       study == nullptr ? limits(key) : (with.empty() ? "" : "with " + with + ": ");
   return fmt::format("  {} = {}  ({}; {}; {})\n      {}{}{}\n", key.name, standard, type_shown(key),
-                     key.unit == "-" ? "no unit" : key.unit, allowed(key), before, key.meaning,
+                     key.unit == "-" ? "no unit" : key.unit,
+                     allowed(key, study == nullptr ? "" : study->name), before,
+                     meaning_of(key, study == nullptr ? "" : study->name),
                      key.source.empty() ? "" : " [" + key.source + "]");
 }
 
@@ -264,7 +302,10 @@ const std::vector<Key>& keys() {
     declare_first_keys(list);
     for (const KeySection& section : study_sections()) section.declare({list, section.name});
     declare_last_keys(list);
-    for (const Study& study : studies()) add_needs(study, list);
+    for (const Study& study : studies()) {
+      add_needs(study, list);
+      add_words(study, list);
+    }
     return list;
   }();
   return all;
@@ -374,10 +415,21 @@ std::string entries_allowed(const Key& key) {
          (key.may_repeat ? "" : ", each once");
 }
 
-std::string allowed(const Key& key) {
-  if (!key.choices.empty()) {
+const std::vector<std::string>& choices_of(const Key& key, const std::string& study) {
+  const OwnWords* own = own_words(key, study);
+  return own != nullptr ? own->choices : key.choices;
+}
+
+std::optional<std::string> (*beyond_of(const Key& key,
+                                       const std::string& study))(const std::string&) {
+  const OwnWords* own = own_words(key, study);
+  return own != nullptr ? own->beyond : key.beyond;
+}
+
+std::string allowed(const Key& key, const std::string& study) {
+  if (const std::vector<std::string>& choices = choices_of(key, study); !choices.empty()) {
     std::vector<std::string> words;
-    for (const std::string& word : key.choices) {
+    for (const std::string& word : choices) {
       const auto among = [&](const std::vector<std::string>& some) {
         return std::find(some.begin(), some.end(), word) != some.end();
       };
@@ -454,9 +506,9 @@ std::string keys_markdown() {
     for (const auto& [study, text] : defaults.others) {
       standard += fmt::format("; {}: `{}`", study, cell(text));
     }
-    out +=
-        fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", key.name, type_shown(key), key.unit,
-                    standard, cell(allowed(key)), cell(limits(key) + key.meaning), key.source);
+    out += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", key.name, type_shown(key),
+                       key.unit, standard, cell(allowed(key)),
+                       cell(limits(key) + meaning_of(key, "")), key.source);
   }
   return out;
 }

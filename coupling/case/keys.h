@@ -30,7 +30,7 @@ struct Key {
   std::string unit;  ///< "-" for pure numbers and words
   Binding where;
   double least = 0, most = 0;        ///< numbers: inclusive range
-  std::vector<std::string> choices;  ///< words: those allowed; empty: any text
+  std::vector<std::string> choices;  ///< words: those allowed, of all studies; empty: any text
   std::string meaning;               ///< with what raising it does
   std::string source;                ///< of the default, e.g. "Roul table 5.1"; may be empty
   bool or_zero = false;              ///< 0 is allowed besides
@@ -82,8 +82,14 @@ bool may_be_in_space(const std::string& study);
 std::string type_name(const Key& key);
 /// Of a list: "one or more, each once"; empty for other keys.
 std::string entries_allowed(const Key& key);
-/// "0 to 2", "0, or 1e-06 to 1000", "smooth | rough", "any finite number".
-std::string allowed(const Key& key);
+/// "0 to 2", "0, or 1e-06 to 1000", "smooth | rough", "any finite number". Of a key whose studies
+/// have words of their own those of this one; of all where it has none.
+std::string allowed(const Key& key, const std::string& study = "");
+/// The words that a key takes in a study, none where it takes any text.
+const std::vector<std::string>& choices_of(const Key& key, const std::string& study);
+/// Key::beyond, or that of the study's own words; may be null.
+std::optional<std::string> (*beyond_of(const Key& key,
+                                       const std::string& study))(const std::string&);
 /// The value of a key in a case, as TOML.
 std::string value_text(const Key& key, const Case& value);
 

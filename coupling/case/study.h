@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +38,22 @@ struct OwnNeed {
   std::vector<std::string> values;  ///< one of these
 };
 
+/// The words that a key takes in one of the studies that share it.
+struct OwnWords {
+  std::string path;
+  std::vector<std::string> choices;
+  std::string meaning;  ///< goes on where the key's ends; may be empty
+  /// Of other words: as Key::beyond.
+  std::optional<std::string> (*beyond)(const std::string&) = nullptr;
+};
+
+/// Where a case names models besides compare.models, which is empty then unless somebody sets it:
+/// both are refused.
+struct ModelsElsewhere {
+  std::string key;                       ///< its path; empty: nowhere
+  bool (*named)(const Case&) = nullptr;  ///< whether it names any
+};
+
 /// Averaged values that an analysis holds at a time, for each realization.
 struct AveragedValues {
   std::vector<std::pair<std::string, double>> keys;  ///< those that multiply it, with their numbers
@@ -53,6 +70,8 @@ struct LongestPart {
 struct FormerName {
   std::string name;
   std::vector<std::string> keys;  ///< what it meant besides, unless set: "fit.models=[\"osl\"]"
+  /// Sections that had other names, too: former, present.
+  std::vector<std::pair<std::string, std::string>> sections = {};
 };
 
 struct Study {
@@ -66,12 +85,15 @@ struct Study {
   std::vector<std::string> without;
   /// Needs of keys that it shares with others.
   std::vector<OwnNeed> needs;
+  /// Words of keys that other studies give other words.
+  std::vector<OwnWords> words;
   /// Lists of the figures that it leaves besides those of every run, shared ones too.
   std::vector<std::vector<SummaryKey> (*)()> figures;
   /// Parameters of models that the run fills in where the user does not set them.
   std::vector<std::string> fills;
   /// Whether compare.models may be empty.
   bool models_optional = false;
+  ModelsElsewhere models_elsewhere;
   /// Whether it varies the models' settings, and sees itself which of them have no effect.
   bool varies_models = false;
   /// Where its setup holds what [material], [motion] and [rest] say; null: without these keys.

@@ -185,7 +185,7 @@ EnsembleFits fit_heaps(const FitSetup& setup, Observations heaps, int threads) {
   return out;
 }
 
-EnsembleFits fit_layers(const VerdictSetup& setup, Observations layers, int threads) {
+EnsembleFits fit_layers(const FitSetup& setup, Observations layers, int threads) {
   EnsembleFits out;
   out.observed = std::move(layers);
   const FitData& data = out.observed.data;

@@ -52,7 +52,7 @@ std::vector<FitModel> models_of_layers(const std::vector<std::string>& texts,
 /// not depend on threads. Throws std::invalid_argument for unknown models and what data and models
 /// throw.
 EnsembleFits fit_heaps(const FitSetup& setup, Observations heaps, int threads);
-EnsembleFits fit_layers(const VerdictSetup& setup, Observations layers, int threads);
+EnsembleFits fit_layers(const FitSetup& setup, Observations layers, int threads);
 
 /// Fitted models at any points (n x 2, frame and units of the data), seen as at the data's own;
 /// n x 3 of each.

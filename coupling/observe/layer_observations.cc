@@ -47,7 +47,7 @@ void add_maps(const AverageSetup& setup, const std::vector<std::string>& files,
 // The depths of the lines, as shares; 1 is the base.
 std::vector<double> levels_of(const Case& value) {
   std::vector<double> out = value.get<AverageSetup>().depths;
-  if (value.get<VerdictSetup>().base) out.push_back(1);
+  if (value.get<FitSetup>().base) out.push_back(1);
   return out;
 }
 
@@ -94,7 +94,7 @@ Observations observe_layers(const Case& value, const std::vector<std::string>& f
   }
   // Rows: component after component of a level, level after level.
   FitData data;
-  data.components = value.get<VerdictSetup>().components;
+  data.components = value.get<FitSetup>().components;
   const auto n = x.size();
   for (std::size_t l = 0; l < levels.size(); ++l) {
     const bool base = l == setup.depths.size();

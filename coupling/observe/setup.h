@@ -1,4 +1,4 @@
-// What is fitted to heaps and to layers: [fit] and [verdict] of a case.
+// What is fitted to heaps and to layers: [fit] of a case.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -18,12 +18,23 @@ inline const std::vector<std::string> kUsualHeapModels = {"hydrostatic",
                                                           "fpa",
                                                           "bcc"};
 
-/// What is fitted to piles (coupling/fit).
+/// ... and to layers.
+inline const std::vector<std::string> kUsualLayerModels = {"flamant",
+                                                           "layer_smooth",
+                                                           "layer_rough",
+                                                           "orthotropic_half_plane",
+                                                           "orthotropic_layer_smooth",
+                                                           "orthotropic_layer_rough",
+                                                           "osl_layer_absorbing",
+                                                           "osl_layer_reflecting"};
+
+/// What is fitted to piles and to loaded layers (coupling/fit).
 struct FitSetup {
   std::vector<std::string> models;           ///< empty: none is fitted
   std::vector<std::string> finite_elements;  ///< solved with the constants, beside the fits
   std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
   std::vector<double> heights = {0.1, 0.25, 0.4};
+  bool base = true;               ///< of layers: the forces on the base, too
   std::vector<double> leave_out;  ///< numbers of realizations, from 1
   std::vector<double> kernel;     ///< widths, diameters, at which it is judged again; may be empty
   double width_diameters = 2;
@@ -31,25 +42,8 @@ struct FitSetup {
   double friction_deg = 0;             ///< of the two-sided models; 0: the steeper slope
   double huber = 0;
   std::int64_t bootstrap = 200;
-};
-
-/// What is fitted to loaded layers (coupling/fit/layer_*).
-struct VerdictSetup {
-  std::vector<std::string> models = {"flamant",
-                                     "layer_smooth",
-                                     "layer_rough",
-                                     "orthotropic_half_plane",
-                                     "orthotropic_layer_smooth",
-                                     "orthotropic_layer_rough",
-                                     "osl_layer_absorbing",
-                                     "osl_layer_reflecting"};
-  std::vector<std::string> finite_elements = {"fe_elastic_layer", "fe_orthotropic_layer"};
-  std::vector<std::string> components = {"sigma_xx", "sigma_yy", "sigma_xy"};
-  bool base = true;
-  std::vector<double> kernel;    ///< widths, diameters, at which it is judged again; may be empty
   std::vector<double> coverage;  ///< sizes of draws: fit/coverage.h; empty: not done
   std::int64_t coverage_draws = 100;
-  std::int64_t bootstrap = 100;
 };
 
 }  // namespace grainfield::coupling

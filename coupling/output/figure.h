@@ -1,10 +1,12 @@
 // Declarations of the figures in summary.json, beside what computes them. docs/summary-keys.md, the
 // page's table of figures and the columns of a sweep's table follow from them.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace grainfield::coupling {
@@ -17,25 +19,33 @@ struct SummaryKey {
   std::string error_key = {};  ///< of its standard error; empty: KEY.standard_error
 };
 
+/// What summary.json holds under a key.
+using FigureValue = std::variant<double, std::int64_t, std::string>;
+
 /// A figure with the function that computes it from `Facts`. Null: the simulation leaves it.
-/// nullopt: these facts have none.
-template <class Facts>
+/// nullopt: these facts have none. `Value`: double of one realization, FigureValue of a whole run.
+template <class Facts, class Value = double>
 struct Figure {
   std::string key, unit, meaning;
-  std::function<std::optional<double>(const Facts&)> of = nullptr;
+  std::function<std::optional<Value>(const Facts&)> of = nullptr;
   std::string heading = {};
+  std::string error_key = {};  ///< as of SummaryKey
 };
+
+/// A figure of a whole run.
+template <class Facts>
+using RunFigure = Figure<Facts, FigureValue>;
 
 /// By summary key, a number for each realization that has one.
 using FigureSamples = std::map<std::string, std::vector<double>>;
 
 /// The declarations; `prefix` comes before every key.
-template <class Facts>
-std::vector<SummaryKey> declared(const std::vector<Figure<Facts>>& rows,
+template <class Facts, class Value>
+std::vector<SummaryKey> declared(const std::vector<Figure<Facts, Value>>& rows,
                                  const std::string& prefix = "") {
   std::vector<SummaryKey> out;
-  for (const Figure<Facts>& row : rows) {
-    out.push_back({prefix + row.key, row.unit, row.meaning, row.heading});
+  for (const auto& row : rows) {
+    out.push_back({prefix + row.key, row.unit, row.meaning, row.heading, row.error_key});
   }
   return out;
 }
@@ -47,6 +57,16 @@ void add_samples(const std::vector<Figure<Facts>>& rows, const Facts& facts, Fig
   for (const Figure<Facts>& row : rows) {
     if (!row.of) continue;
     if (const auto value = row.of(facts)) out[prefix + row.key].push_back(*value);
+  }
+}
+
+/// Sets what the rows compute from a run's facts.
+template <class Facts>
+void add_values(const std::vector<RunFigure<Facts>>& rows, const Facts& facts,
+                std::map<std::string, FigureValue>& out, const std::string& prefix = "") {
+  for (const RunFigure<Facts>& row : rows) {
+    if (!row.of) continue;
+    if (const auto value = row.of(facts)) out[prefix + row.key] = *value;
   }
 }
 

@@ -10,42 +10,38 @@
 
 #include "coupling/output/added_forces.h"
 #include "coupling/output/atomic_file.h"
+#include "coupling/output/vtu_grid.h"
 #include "dem/snapshot/displacements.h"
 #include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {
 namespace {
 
-// VTK's cell types.
-constexpr int vtk_vertex = 1, vtk_line = 3, vtk_strip = 6, vtk_polygon = 7, vtk_quad = 9;
-
-/// An unstructured grid in the making: cells that share no points. Its data are of the cells, or
-/// the same at every point of one: glyphs and tubes take them from there.
+/// Cells that share no points. Their data are of the cells, or the same at every point of one:
+/// glyphs and tubes take them from there.
 class Grid {
  public:
-  explicit Grid(const dem::Snapshot& of, bool on_points = false)
-      : mark_(added_forces_in_vtk(of)), on_points_(on_points) {}
+  explicit Grid(const dem::Snapshot& of, bool on_points = false) : on_points_(on_points) {
+    grid_.set_field_data(added_forces_in_vtk(of));
+  }
 
-  void add_cell(const std::vector<dem::Vec3>& corners, int type) {
-    for (const dem::Vec3& c : corners)
-      fmt::format_to(std::back_inserter(points_), "{:.9g} {:.9g} {:.9g}\n", c.x(), c.y(), c.z());
-    for (std::size_t k = 0; k < corners.size(); ++k) connectivity_ += fmt::format("{} ", count_++);
-    offsets_ += fmt::format("{} ", count_);
-    types_ += fmt::format("{} ", type);
+  void add_cell(const std::vector<dem::Vec3>& corners, VtuCell type) {
+    std::vector<std::size_t> points;
+    for (const dem::Vec3& c : corners) points.push_back(grid_.add_point(c.x(), c.y(), c.z()));
+    grid_.add_cell(type, points);
     corners_.push_back(corners.size());
   }
 
   /// `of` gives the text of cell k's value.
   template <class Of>
   void add_data(const std::string& name, const char* type, int components, Of&& of) {
-    data_ += fmt::format(
-        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n", type,
-        name, components);
+    std::string rows;
     for (std::size_t k = 0; k < corners_.size(); ++k) {
       const std::string text = of(k) + "\n";
-      for (std::size_t times = on_points_ ? corners_[k] : 1; times > 0; --times) data_ += text;
+      for (std::size_t times = on_points_ ? corners_[k] : 1; times > 0; --times) rows += text;
     }
-    data_ += "</DataArray>\n";
+    grid_.add_data(on_points_ ? VtuGrid::Place::points : VtuGrid::Place::cells, name, type,
+                   components, rows);
   }
   template <class Of>
   void add_number(const std::string& name, Of&& of) {
@@ -65,28 +61,10 @@ class Grid {
     });
   }
 
-  void write(const std::string& file) const {
-    const char* place = on_points_ ? "PointData" : "CellData";
-    write_text_file(
-        file,
-        fmt::format(
-            "<?xml version=\"1.0\"?>\n"
-            "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-            "<UnstructuredGrid>{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n"
-            "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n"
-            "{}</DataArray></Points>\n"
-            "<Cells><DataArray type=\"Int64\" Name=\"connectivity\" "
-            "format=\"ascii\">{}</DataArray>\n"
-            "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">{}</DataArray>\n"
-            "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">{}</DataArray></Cells>\n"
-            "<{}>\n{}</{}>\n</Piece></UnstructuredGrid></VTKFile>\n",
-            mark_, count_, corners_.size(), points_, connectivity_, offsets_, types_, place, data_,
-            place));
-  }
+  void write(const std::string& file) const { write_text_file(file, grid_.text()); }
 
  private:
-  std::string mark_, points_, connectivity_, offsets_, types_, data_;
-  std::size_t count_ = 0;
+  VtuGrid grid_;
   std::vector<std::size_t> corners_;  // of each cell
   bool on_points_;
 };
@@ -177,11 +155,11 @@ void write_grains_vtu(const std::string& file, const dem::Snapshot& snapshot,
   Grid grid(snapshot, spheres && !surfaces);
   for (const dem::Grain& g : grains) {
     if (surfaces)
-      grid.add_cell(surface_strip(g), vtk_strip);
+      grid.add_cell(surface_strip(g), VtuCell::strip);
     else if (spheres)
-      grid.add_cell({g.position}, vtk_vertex);
+      grid.add_cell({g.position}, VtuCell::vertex);
     else
-      grid.add_cell(outline(g), vtk_polygon);
+      grid.add_cell(outline(g), VtuCell::polygon);
   }
   grid.add_integer("id", [&](std::size_t k) { return grains[k].id; });
   grid.add_number("radius", [&](std::size_t k) { return grains[k].radius; });
@@ -223,7 +201,7 @@ void write_contacts_vtu(const std::string& file, const dem::Snapshot& snapshot) 
   const std::vector<dem::Contact>& contacts = snapshot.contacts;
   Grid grid(snapshot);
   for (const dem::Contact& c : contacts)
-    grid.add_cell({grain(snapshot, c.i).position, branch_end(snapshot, c)}, vtk_line);
+    grid.add_cell({grain(snapshot, c.i).position, branch_end(snapshot, c)}, VtuCell::line);
   grid.add_integer("i", [&](std::size_t k) { return grain(snapshot, contacts[k].i).id; });
   grid.add_integer("j", [&](std::size_t k) {
     return contacts[k].j < 0 ? -1 : grain(snapshot, contacts[k].j).id;
@@ -260,11 +238,11 @@ void write_chains_vtu(const std::string& file, const dem::Snapshot& snapshot,
     force.push_back(c.normal_force);
     width.push_back(radius / 2 * c.normal_force / largest);
     if (tubes) {
-      grid.add_cell({gi.position, end}, vtk_line);
+      grid.add_cell({gi.position, end}, VtuCell::line);
       continue;
     }
     const dem::Vec3 side = dem::Vec3(-along.y(), along.x(), 0).normalized() * width.back();
-    grid.add_cell({gi.position - side, end - side, end + side, gi.position + side}, vtk_quad);
+    grid.add_cell({gi.position - side, end - side, end + side, gi.position + side}, VtuCell::quad);
   }
   grid.add_integer("chain", [&](std::size_t k) { return chain[k]; });
   grid.add_number("normal_force", [&](std::size_t k) { return force[k]; });

@@ -11,9 +11,9 @@
 
 namespace grainfield::coupling {
 
-/// Finished piles to start from instead of pouring.
+/// Finished realizations to start from instead of building them.
 struct GrainFiles {
-  std::vector<std::string> files;  ///< empty: the piles are poured
+  std::vector<std::string> files;  ///< empty: they are built
 };
 
 /// Its key.

@@ -14,7 +14,7 @@ void declare_grain_files_keys(SectionKeys s) {
          "piles; [shape], [source] and [floor] are not used. []: the piles are poured. Of study "
          "sample with sample.filling = dropped: first states (state_000) of earlier runs between "
          "walls, which take the place of dropping; another material may load them, of the same "
-         "density");
+         "density. Of study point-load in the plane: layers under the same load.force");
   s.or_none();
 }
 

@@ -5,7 +5,6 @@
 // clang-format off
 #define GRAINFIELD_STUDIES(STUDY) \
   STUDY(point_load) \
-  STUDY(point_load_verdict) \
   STUDY(pile) \
   STUDY(pile_fields) \
   STUDY(cone) \

@@ -154,7 +154,8 @@ def verdicts(results: Results, studies: list[str]) -> str:
         if sentence and study.startswith("fit-"):  # dips have a table of their own
             judge = ("" if study in kept else
                      f" (states lost, judge of version {results.text(study, 'version')})")
-            lines += f"- `{study}`{judge}: {sentence}\n"
+            models = re.sub(r"^The heaps have .*? of ensembles\. ", "", sentence)
+            lines += f"- `{study}`{judge}: {models}\n"
     if not lines:
         return ""
     return (

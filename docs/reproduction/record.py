@@ -22,7 +22,8 @@ def write_file(file: pathlib.Path, content: bytes) -> None:
 def record_run(run: pathlib.Path, results: pathlib.Path) -> list[pathlib.Path]:
     """Copies summary.json, profiles.md and the kept pictures under the name of the run's case.
 
-    They become CASE.json, CASE.profiles.md, CASE.base-pressure.svg and CASE.volume-fraction.png.
+    They become CASE.json, CASE.profiles.md, CASE.base-pressure.svg and CASE.volume-fraction.png. Cases fit-*
+    fit models to the piles of another case, which has the pictures.
     Returns the files written. Raises Refused where the folder holds no summary.json with a case.name
     that is a file's name.
     """
@@ -38,7 +39,7 @@ def record_run(run: pathlib.Path, results: pathlib.Path) -> list[pathlib.Path]:
     if (run / "profiles.md").exists():
         files[f"{name}.profiles.md"] = (run / "profiles.md").read_bytes()
     report = (run / "report.html").read_text(encoding="utf-8") if (run / "report.html").exists() else ""
-    for title, kept in KEPT.items():
+    for title, kept in ({} if name.startswith("fit-") else KEPT).items():
         found = re.search(rf'alt="{re.escape(title)}" src="data:image/(svg|png)[^;]*;base64,([^"]*)"', report)
         if found:
             files[f"{name}.{kept}.{found[1]}"] = base64.b64decode(found[2])

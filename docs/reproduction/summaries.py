@@ -141,9 +141,14 @@ class Results:
         return [name for name in self._others if name.startswith(study + ".")]
 
     def dips(self) -> list[Dip]:
-        """The dips of all pours of the record, judged together, by the studies' names."""
+        """The dips of all pours of the record, judged together, by the studies' names.
+
+        Studies fit-* fit models to the piles of another one: they are no pours of their own.
+        """
         found = []
         for study in self.all:
+            if study.startswith("fit-"):
+                continue
             difference = self.number(study, "dip.difference")
             one_sided = self.plain(study, "dip.p_value")  # of no dip, whatever the recorded word's rule
             if difference is not None and one_sided is not None:

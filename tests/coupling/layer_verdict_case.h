@@ -1,4 +1,4 @@
-// A point-load-verdict of two tiny packings.
+// Models fitted to the response of two tiny packings.
 #pragma once
 #include <string>
 
@@ -6,7 +6,7 @@ namespace grainfield::coupling::testing {
 
 inline std::string tiny_verdict(const std::string& more = "") {
   return R"(title = "tiny verdict"
-study = "point-load-verdict"
+study = "point-load"
 [packing]
 kind = "triangular"
 sizes = "mono"
@@ -27,7 +27,7 @@ depths = [0.5]
 points = 11
 map_columns = 9
 map_rows = 5
-[verdict]
+[fit]
 models = ["flamant", "layer_smooth", "layer_rough", "osl_layer_absorbing"]
 finite_elements = []
 bootstrap = 0

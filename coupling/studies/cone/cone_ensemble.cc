@@ -16,7 +16,9 @@
 #include "coupling/heap/scaled.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/comparison_page.h"
+#include "coupling/studies/cone/figures.h"
 #include "coupling/studies/cone/simulation.h"
+#include "coupling/studies/pile/figures.h"
 #include "coupling/studies/pile/pile_ensemble.h"
 #include "dem/snapshot/contact_changes.h"
 
@@ -142,25 +144,10 @@ void ConeEnsemble::add(const Realization& realization, const ConeFrame& frame) {
   const double weight = weight_of(cone, frame);
   const double carried = dem::base_force(cone).z();
   figures["base.weight_ratio"].push_back(carried / weight);
-  figures["cone.base_over_weight"].push_back(force / carried);
-  figures["cone.repose_deg"].push_back(frame.repose_deg);
-  figures["cone.sector_repose_deviation_deg"].push_back(deviation(frame.sector_repose_deg));
-  figures["cone.height"].push_back(frame.height);
-  figures["cone.foot"].push_back(frame.foot);
-  figures["cone.apex_height"].push_back(frame.apex_height());
-  figures["cone.model_over_height"].push_back(frame.apex_height() / frame.height);
-  // Of the cone with the flank's line and the grains' rho g.
-  const double model =
-      unit / frame.height * std::numbers::pi / 3 * frame.foot * frame.foot * frame.apex_height();
-  figures["cone.model_over_weight"].push_back(model / weight);
-  figures["cone.volume_fraction"].push_back(frame.volume_fraction);
-  figures["cone.rho_g_h"].push_back(unit);
-  figures["cone.mean_diameter"].push_back(frame.diameter);
-  figures["cone.coordination"].push_back(coordination(cone));
-  figures["dip.centre"].push_back(dip.mean.centre);
-  figures["dip.shoulder"].push_back(dip.mean.shoulder);
-  figures["dip.sector_error"].push_back(dip.sector_error);
-  figures["dip.contacts_in_disk"].push_back(dip.in_disk);
+  add_samples(cone_rows(),
+              {cone, frame, dip, weight, force, carried, deviation(frame.sector_repose_deg)},
+              figures);
+  add_samples(window_rows(), dip.mean, figures);
 }
 
 double ConeEnsemble::add_base(const dem::Snapshot& cone, const ConeFrame& frame) {

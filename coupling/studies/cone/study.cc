@@ -21,9 +21,11 @@
 #include "coupling/run/summary_keys.h"
 #include "coupling/studies/cone/cone_ensemble.h"
 #include "coupling/studies/cone/cone_file.h"
+#include "coupling/studies/cone/figures.h"
 #include "coupling/studies/cone/keys.h"
 #include "coupling/studies/cone/page.h"
 #include "coupling/studies/cone/simulation.h"
+#include "coupling/studies/pile/figures.h"
 #include "coupling/studies/pile/keys.h"
 #include "coupling/studies/pile/simulation.h"
 
@@ -110,7 +112,7 @@ void add_cone_fields(const Case& value, const ConeEnsemble& cones, StudyResult& 
                           cones.in_metres(cones.base_rings, cones.methods.front().options));
 }
 
-void add_base_figures(const ConeEnsemble& cones, Summary& summary) {
+void add_base_figures(const ConeEnsemble& cones, const std::string& source, Summary& summary) {
   const Field base = cones.base_rings.mean();
   const Eigen::VectorXd pressure = -base.find("sigma_zz")->value;
   // The floor pulls the grains inwards with -sigma_rz.
@@ -120,22 +122,15 @@ void add_base_figures(const ConeEnsemble& cones, Summary& summary) {
     if (pressure[k] > pressure[at]) at = k;
     if (shear[k] > shear[shear_at]) shear_at = k;
   }
-  summary["base.centre_pressure"] = pressure[0];
-  summary["base.largest_pressure"] = pressure[at];
-  summary["base.largest_at"] = cones.radii[at];
-  summary["base.largest_shear"] = shear[shear_at];
-  summary["base.largest_shear_at"] = cones.radii[shear_at];
-  summary["base.smearing_width"] = cones.methods.front().options.width;
-  summary["dip.ratio"] = pressure[0] / pressure[at];
+  add_values(base_rows(),
+             {pressure[0], pressure[at], cones.radii[at], cones.methods.front().options.width},
+             summary);
+  add_values(cones_rows(), {source, shear[shear_at], cones.radii[shear_at]}, summary);
 }
 
 void add_dip(const ConeEnsemble& cones, StudyResult& out) {
   const Dip dip = judge_dip(cones.windows);
-  out.summary["dip.window_ratio"] = dip.window_ratio;
-  out.summary["dip.difference"] = dip.difference.mean;
-  out.summary["dip.standard_error"] = dip.difference.standard_error;
-  out.summary["dip.p_value"] = dip.difference.p_value;
-  out.summary["dip.verdict"] = dip.verdict;
+  add_values(dip_rows(), dip, out.summary);
   Judgement& judgement = out.comparison.judgement;
   judgement.findings = dip_lines(dip);
   if (std::isnan(dip.centre)) {
@@ -168,9 +163,7 @@ StudyResult analyse_cones(const Case& value, const std::vector<std::string>& fil
   page.averaged = describe(cones.methods.front().options);
   add_cone_fields(value, cones, out, page);
   compare_cones(cones, out, page);
-  const std::string source = source_of(value, files);
-  if (!source.empty()) out.summary["cone.source"] = source;
-  add_base_figures(cones, out.summary);
+  add_base_figures(cones, source_of(value, files), out.summary);
   add_dip(cones, out);
   out.page = [page](const StudyResult& result, const Realization* first) {
     return cone_page(result, first, page);

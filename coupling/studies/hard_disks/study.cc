@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -12,6 +11,7 @@
 #include "coupling/run/ensemble.h"
 #include "coupling/run/recorded.h"
 #include "coupling/run/study_result.h"
+#include "coupling/studies/hard_disks/figures.h"
 #include "coupling/studies/hard_disks/keys.h"
 #include "coupling/studies/hard_disks/page.h"
 #include "dem/collisions/gas.h"
@@ -54,22 +54,7 @@ class GasAnalysis {
   StudyResult run() const {
     StudyResult out = begin_result(value_, files_);
     add_figures(out.summary, figures_);
-    const bool pressure = results_.setup.kind == "pressure";
-    if (pressure || results_.setup.friction == 0) {
-      out.summary[pressure ? "gas.pressure_largest_difference" : "gas.haff_largest_difference"] =
-          gas_largest_difference(results_);
-    }
-    double drift = 0, overlap = 0;
-    for (const double f : results_.setup.fractions) {
-      const std::string name = "gas." + dem::name_of_fraction(f) + ".";
-      for (std::size_t r = 0; r < files_.size(); ++r) {
-        drift = std::max(
-            drift, figures_.at(name + "energy_drift")[r] / figures_.at(name + "collisions")[r]);
-        overlap = std::max(overlap, figures_.at(name + "overlap")[r]);
-      }
-    }
-    out.summary["gas.energy_drift_per_collision"] = drift;
-    out.summary["gas.overlap"] = overlap;
+    add_values(gas_rows(), {results_, figures_}, out.summary, "gas.");
     out.comparison.judgement.findings = {gas_sentence(results_)};
     out.texts.emplace_back("profiles.csv", gas_csv(results_));
     out.overview = overview();

@@ -11,6 +11,7 @@
 #include "coupling/run/ensemble.h"
 #include "coupling/run/recorded.h"
 #include "coupling/run/study_result.h"
+#include "coupling/studies/implicit_settling/figures.h"
 #include "coupling/studies/implicit_settling/keys.h"
 #include "coupling/studies/implicit_settling/simulation.h"
 #include "coupling/studies/lattice_pile/keys.h"
@@ -39,11 +40,8 @@ class SettlingAnalysis {
   StudyResult run() const {
     StudyResult out = begin_result(value_, files_);
     add_figures(out.summary, simulated_figures(files_));
-    out.summary["settling.normal_max_error"] = largest_error(normal_, hard_normal_);
-    out.summary["settling.horizontal_max_error"] = largest_error(horizontal_, hard_horizontal_);
-    for (const char* loss : {"lost_normal", "lost_tangential", "lost_well", "lost_scheme"}) {
-      out.summary[std::string("settling.") + loss] = columns_.at(loss).back();
-    }
+    add_values(settling_rows(), {normal_, horizontal_, hard_normal_, hard_horizontal_, columns_},
+               out.summary, "settling.");
     out.comparison.judgement.findings = {sentence(out.summary)};
     const double halved = std::get<double>(out.summary.at("settling.halved"));
     if (halved > 0) {
@@ -78,10 +76,6 @@ class SettlingAnalysis {
       hard_normal_[i] = hard[static_cast<std::size_t>(i)].normal;
       hard_horizontal_[i] = hard[static_cast<std::size_t>(i)].horizontal;
     }
-  }
-
-  static double largest_error(const Eigen::VectorXd& found, const Eigen::VectorXd& of) {
-    return (found - of).cwiseAbs().maxCoeff() / of.cwiseAbs().maxCoeff();
   }
 
   std::string sentence(const Summary& summary) const {

@@ -17,6 +17,7 @@
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/measured_base.h"
 #include "coupling/run/study_result.h"
+#include "coupling/studies/lattice_pile/figures.h"
 #include "coupling/studies/lattice_pile/keys.h"
 #include "coupling/studies/lattice_pile/page.h"
 #include "coupling/studies/lattice_pile/simulation.h"
@@ -55,7 +56,7 @@ class LatticePileAnalysis {
     close();
     StudyResult out = begin_result(value_, files_);
     add_figures(out.summary, figures_);
-    add_own_figures(out.summary);
+    add_values(lattice_rows(), facts_of_base(), out.summary, "liffman.");
     std::optional<Chart> beside;
     if (const MeasuredSetup& measured = value_.get<MeasuredSetup>(); !measured.field.empty()) {
       beside =
@@ -130,32 +131,16 @@ class LatticePileAnalysis {
   Eigen::VectorXd normal() const { return normal_.rowwise().mean(); }
   Eigen::VectorXd horizontal() const { return horizontal_.rowwise().mean(); }
 
-  void add_own_figures(Summary& summary) const {
-    // A single column of disks pushes to neither side: nothing to divide by.
-    const auto largest = [](const Eigen::VectorXd& difference, const Eigen::VectorXd& of) {
-      return difference.cwiseAbs().maxCoeff() / of.cwiseAbs().maxCoeff();
-    };
-    summary["liffman.rows"] = static_cast<std::int64_t>(rows_.size());
-    summary["liffman.base_grains"] = static_cast<std::int64_t>(base_);
-    summary["liffman.grain_weight"] = weight_;
-    summary["liffman.softness"] = weight_ / (stiffness_ * 2 * lattice_.radius);
-    summary["liffman.normal_max_error"] = largest(normal() - lattice_normal_, lattice_normal_);
-    summary["liffman.horizontal_max_error"] =
-        largest(horizontal() - lattice_horizontal_, lattice_horizontal_);
-    summary["liffman.line_normal_max_difference"] = largest(normal() - line_normal_, line_normal_);
-    summary["liffman.line_horizontal_max_difference"] =
-        largest(horizontal() - line_horizontal_, line_horizontal_);
-    summary["liffman.normal_largest"] = normal().maxCoeff();
-    summary["liffman.horizontal_largest"] = horizontal().cwiseAbs().maxCoeff();
-    const BaseProfile grains = profile_of(normal(), horizontal());
-    const BaseProfile lines = profile_of(line_normal_, line_horizontal_);
-    summary["liffman.normal_centre"] = centre_over_largest(grains);
-    summary["liffman.line_normal_centre"] = centre_over_largest(lines);
-    if (horizontal().cwiseAbs().maxCoeff() > 0) {
-      const MiddleShear shear = middle_shear(grains);
-      summary["liffman.horizontal_explained"] = shear.explained;
-      summary["liffman.horizontal_slope"] = shear.slope / middle_shear(lines).slope;
-    }
+  LatticeFacts facts_of_base() const {
+    return {static_cast<int>(rows_.size()),
+            base_,
+            weight_,
+            stiffness_ * 2 * lattice_.radius,
+            {normal(), horizontal()},
+            {lattice_normal_, lattice_horizontal_},
+            {line_normal_, line_horizontal_},
+            profile_of(normal(), horizontal()),
+            profile_of(line_normal_, line_horizontal_)};
   }
 
   std::string sentence(const Summary& summary) const {

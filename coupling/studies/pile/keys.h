@@ -10,7 +10,6 @@ void declare_floor_keys(SectionKeys s);
 void declare_sleep_keys(SectionKeys s);
 void declare_change_keys(SectionKeys s);
 void declare_heap_keys(SectionKeys s);
-void declare_fit_keys(SectionKeys s);
 
 inline constexpr KeySection kShapeKeys{"shape", KeyRole::grains, declare_shape_keys};
 inline constexpr KeySection kSourceKeys{"source", KeyRole::grains, declare_source_keys};
@@ -18,7 +17,6 @@ inline constexpr KeySection kFloorKeys{"floor", KeyRole::grains, declare_floor_k
 inline constexpr KeySection kSleepKeys{"sleep", KeyRole::grains, declare_sleep_keys};
 inline constexpr KeySection kChangeKeys{"change", KeyRole::grains, declare_change_keys};
 inline constexpr KeySection kHeapKeys{"heap", KeyRole::analysis, declare_heap_keys};
-inline constexpr KeySection kFitKeys{"fit", KeyRole::analysis, declare_fit_keys};
 
 /// Keys of its figures in summary.json.
 std::vector<SummaryKey> pile_figures();

@@ -3,11 +3,17 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <string>
 #include <tuple>
+#include <variant>
 
+#include "coupling/fit/fit_report.h"
+#include "coupling/fit/fit_tables.h"
 #include "coupling/report/judgement.h"
 #include "coupling/run/comparison_page.h"
+#include "coupling/studies/pile/simulation.h"
+#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -113,6 +119,46 @@ void add_tables(Report& report, const PileReport& in) {
   add_rows(report, "How it was made", in.made);
 }
 
+// A row for every changed gravity, from the least one.
+Table changes_of(const Summary& summary) {
+  Table table{"Changed gravity",
+              "Means over the piles with standard errors; against each pile under its own gravity.",
+              {"gravity", "contacts per grain, ratio", "contacts opened", "closed",
+               "brought to sliding", "largest displacement / r", "dip's change (rho g h)"},
+              {}};
+  const std::string first = "change.gravity_", last = ".coordination_ratio";
+  std::map<double, std::string> changes;
+  for (const auto& [key, unused] : summary) {
+    if (!key.starts_with(first) || !key.ends_with(last)) continue;
+    const std::string name = key.substr(0, key.size() - last.size());
+    if (const auto gravity = dem::parse_number(name.substr(first.size()))) {
+      changes[*gravity] = name;
+    }
+  }
+  for (const auto& [gravity, name] : changes) {
+    std::vector<std::string> row{fmt::format("{:g} m/s2", gravity)};
+    for (const char* what :
+         {".coordination_ratio", ".contacts_lost", ".contacts_gained", ".newly_sliding",
+          ".max_displacement_over_radius", ".dip_difference_change"}) {
+      row.push_back(shown_with_error(summary, name + what));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+// Figures without a value say why, where it is the flanks.
+void add_reasons(ReportRows& rows, const std::string& flat) {
+  for (auto& [name, value] : rows) {
+    const bool slope = name.find("repose") != std::string::npos;
+    const bool window = name.find("(pile.volume_fraction_") != std::string::npos ||
+                        name.find("(density.") != std::string::npos;
+    if (!value.starts_with("-") || (value.size() > 1 && value[1] != ' ')) continue;
+    if (slope && !flat.empty()) value = "- (" + flat + ")";
+    if (window) value = "- (a pile is too small or too flat for these windows)";
+  }
+}
+
 }  // namespace
 
 Report pile_report(const PileReport& in) {
@@ -141,6 +187,39 @@ Report pile_report(const PileReport& in) {
   }
   add_tables(report, in);
   return report;
+}
+
+Report pile_page(const StudyResult& result, const Realization* first, const PilePageFacts& facts) {
+  PileReport in;
+  if (facts.beside) in.beside = facts.beside->picture();
+  in.title = title_of(result.value);
+  // What stands, which is not what the case says where piles are taken from files.
+  double grains = result.value.get<dem::PileSetup>().source.grains;
+  if (const auto standing = result.summary.find("dem.grains"); standing != result.summary.end()) {
+    if (const auto* mean = std::get_if<double>(&standing->second)) grains = *mean;
+  }
+  in.subtitle = fmt::format("{} pile{}, {:.0f} grains each", result.realizations.size(),
+                            result.realizations.size() == 1 ? "" : "s", grains);
+  if (first != nullptr) {
+    in.pile = first->find("pile");
+    for (const auto& [name, state] : first->snapshots) {
+      if (&state == in.pile) continue;
+      in.changed.emplace_back(fmt::format("g = {:g} m/s2", state.gravity.norm()), &state);
+    }
+  }
+  in.comparison = facts.fitted != nullptr ? facts.fitted->piles : result.comparison;
+  in.comparison.judgement = result.comparison.judgement;
+  if (facts.fitted != nullptr) {
+    in.fit_pictures = fit_pictures(*facts.fitted->fits);
+    in.fit_tables = fit_tables(*facts.fitted->fits);
+  }
+  in.map = result.map;
+  in.averaged = facts.averaged;
+  in.figures = figure_rows(result);
+  add_reasons(in.figures, facts.flat);
+  in.changes = changes_of(result.summary);
+  in.made = origin_rows(result);
+  return pile_report(in);
 }
 
 }  // namespace grainfield::coupling

@@ -1,5 +1,6 @@
 // The report of a pile.
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -7,7 +8,9 @@
 
 #include "coupling/compare/compare.h"
 #include "coupling/field.h"
+#include "coupling/fit/fits.h"
 #include "coupling/report/report.h"
+#include "coupling/run/study_result.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -29,5 +32,21 @@ struct PileReport {
 };
 
 Report pile_report(const PileReport& input);
+
+/// Fits of models to piles, and the piles' own lines, which stay on the page.
+struct FittedPiles {
+  std::shared_ptr<const EnsembleFits> fits;
+  Comparison piles;
+};
+
+/// What the page of a result has besides it.
+struct PilePageFacts {
+  std::string averaged;                 ///< as of PileReport
+  std::string flat;                     ///< which flanks no line fits; empty: none
+  std::optional<Chart> beside;          ///< measured base forces and the grains'
+  const FittedPiles* fitted = nullptr;  ///< may be null
+};
+/// `first`: may be null.
+Report pile_page(const StudyResult& result, const Realization* first, const PilePageFacts& facts);
 
 }  // namespace grainfield::coupling

@@ -8,10 +8,10 @@
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/base.h"
-#include "coupling/heap/axis_stress.h"
 #include "coupling/heap/scaled.h"
 #include "coupling/heap/setup.h"
 #include "coupling/run/averaging_setup.h"
+#include "coupling/studies/pile/figures.h"
 #include "dem/snapshot/contact_changes.h"
 
 namespace grainfield::coupling {
@@ -131,28 +131,25 @@ void PileEnsemble::add(const Realization& realization, const PileFrame& frame) {
   windows.push_back(base_windows(pile, frame, value.get<HeapSetup>()));
 
   for (const auto& [key, figure] : realization.figures) figures[key].push_back(figure);
-  const auto own = [&](const std::string& key, double figure) {
-    if (realization.figures.find(key) == realization.figures.end()) figures[key].push_back(figure);
+  const auto left_by_run = [&](const char* key, double otherwise) {
+    const auto at = realization.figures.find(key);
+    return at == realization.figures.end() ? otherwise : at->second;
   };
   double weight = 0;
   for (const dem::Grain& grain : pile.grains) {
     if (!grain.fixed) weight += grain.mass * frame.gravity;
   }
-  own("base.weight_ratio", dem::base_force(pile).y() / weight);
-  own("dem.repose_angle_left_deg", frame.repose_left_deg);
-  own("dem.repose_angle_right_deg", frame.repose_right_deg);
-  own("dem.volume_fraction", frame.volume_fraction);
-  own("pile.height", frame.height);
-  own("pile.mean_diameter", frame.diameter);
-  own("pile.half_base_left", frame.half_left);
-  own("pile.half_base_right", frame.half_right);
-  own("heap.rho_g_h", unit);
-  own("heap.coordination", coordination(pile));
-  own("dip.centre", windows.back().centre);
-  own("dip.shoulder", windows.back().shoulder);
-  own("axis.stress_ratio", axis_stress_ratio(pile, frame, value.get<HeapSetup>()));
-  own("pile.volume_fraction_centre", frame.centre_fraction);
-  own("pile.volume_fraction_surface", frame.surface_fraction);
+  FigureSamples own{{"base.weight_ratio", {dem::base_force(pile).y() / weight}},
+                    {"dem.volume_fraction", {frame.volume_fraction}}};
+  add_samples(pile_rows(),
+              {pile, frame, value.get<HeapSetup>(),
+               left_by_run("dem.repose_angle_left_deg", frame.repose_left_deg),
+               left_by_run("dem.repose_angle_right_deg", frame.repose_right_deg)},
+              own);
+  add_samples(window_rows(), windows.back(), own);
+  for (const auto& [key, samples] : own) {
+    if (!realization.figures.contains(key)) figures[key].push_back(samples.front());
+  }
   for (const auto& [name, state] : realization.snapshots) {
     if (&state != &pile) add_change(name, pile, state, frame);
   }
@@ -161,15 +158,14 @@ void PileEnsemble::add(const Realization& realization, const PileFrame& frame) {
 void PileEnsemble::add_change(const std::string& name, const dem::Snapshot& pile,
                               const dem::Snapshot& changed, const PileFrame& frame) {
   require_same_grains(pile, changed);
-  const double now = coordination(changed);
-  figures["change." + name + ".coordination"].push_back(now);
-  figures["change." + name + ".coordination_ratio"].push_back(now / coordination(pile));
   const BaseWindows before = base_windows(pile, frame, value.get<HeapSetup>());
   const BaseWindows after = base_windows(changed, frame, value.get<HeapSetup>());
   // Pressures in units of the pile's rho g h: the gravity's own factor is taken out.
   const double factor = changed.gravity.norm() / frame.gravity;
-  figures["change." + name + ".dip_difference_change"].push_back(
-      (after.shoulder - after.centre) / factor - (before.shoulder - before.centre));
+  add_samples(change_rows(),
+              {coordination(changed), coordination(pile), (after.shoulder - after.centre) / factor,
+               before.shoulder - before.centre},
+              figures, "change." + name + ".");
 }
 
 }  // namespace grainfield::coupling

@@ -1,8 +1,20 @@
+#include "coupling/studies/point_load/figures.h"
+
 #include "coupling/studies/point_load/keys.h"
 
 namespace grainfield::coupling {
+namespace {
 
-std::vector<SummaryKey> point_load_figures() {
+using Value = std::optional<FigureValue>;
+
+// Of realizations that are enough to compare a ring with the axis.
+template <class T>
+Value of_ring(const RingFacts& f, const T& value) {
+  return f.ring.word().empty() ? std::nullopt : Value(value);
+}
+
+// What the simulation leaves.
+std::vector<SummaryKey> simulated() {
   return {
       {"dem.layer_height", "m", "height of the layer from its columns' highest grains"},
       {"dem.layer_width", "m", "distance of the side walls"},
@@ -23,23 +35,54 @@ std::vector<SummaryKey> point_load_figures() {
       {"load.load_steps", "-", "load steps of Newton's method"},
       {"load.iterations", "-", "its iterations in all of them"},
       {"load.no_rearrangement", "-", "share of realizations without a gained or lost contact"},
-      {"layer.depth", "m", "h of the models: mean over realizations"},
-      {"layer.F_over_h", "N/m", "load over depth: the unit of normalised responses"},
-      {"layer.F_over_h2", "Pa", "load over depth squared: the same in three dimensions"},
-      {"layer.mean_diameter", "m", "of the moving grains"},
+  };
+}
+
+}  // namespace
+
+const std::vector<RunFigure<LayersFacts>>& layers_rows() {
+  using F = const LayersFacts&;
+  static const std::vector<RunFigure<LayersFacts>> all{
+      {"layer.depth", "m", "h of the models: mean over realizations", [](F f) { return f.depth; }},
+      {"layer.F_over_h", "N/m", "load over depth: the unit of normalised responses",
+       [](F f) { return f.dim == 2 ? Value(f.force / f.depth) : std::nullopt; }},
+      {"layer.F_over_h2", "Pa", "load over depth squared: the same in three dimensions",
+       [](F f) { return f.dim == 3 ? Value(f.force / (f.depth * f.depth)) : std::nullopt; }},
+      {"layer.mean_diameter", "m", "of the moving grains", [](F f) { return f.diameter; }},
+  };
+  return all;
+}
+
+const std::vector<RunFigure<RingFacts>>& ring_rows() {
+  using F = const RingFacts&;
+  static const std::vector<RunFigure<RingFacts>> all{
       {"response.ring_less_axis", "-",
        "3D: pressure on the base on a ring about the load less that below the load, over F/h^2; "
-       "each realization's ring is where the others' mean is largest, beyond the averaging"},
-      {"response.ring_at", "-", "3D: radius of that ring over h"},
+       "each realization's ring is where the others' mean is largest, beyond the averaging",
+       [](F f) { return of_ring(f, f.ring.difference); }},
+      {"response.ring_at", "-", "3D: radius of that ring over h",
+       [](F f) { return of_ring(f, f.ring.at / f.depth); }},
       {"response.ring_p", "-",
        "3D: two-sided chance of such a difference if there were none (Student's t over the "
-       "realizations)"},
-      {"response.ring", "text",
-       "3D: \"ring\", \"peak\", or \"neither\" where that is 0.05 or more"},
-      {"response.within_radius", "m", "3D: where the profiles by radius end"},
+       "realizations)",
+       [](F f) { return of_ring(f, f.ring.p); }},
+      {"response.ring", "text", "3D: \"ring\", \"peak\", or \"neither\" where that is 0.05 or more",
+       [](F f) { return of_ring(f, f.ring.word()); }},
+      {"response.within_radius", "m", "3D: where the profiles by radius end",
+       [](F f) { return f.within_radius; }},
       {"response.within_over_load", "-",
-       "3D: base response within that radius, from its profile, over F"},
+       "3D: base response within that radius, from its profile, over F",
+       [](F f) { return f.within_force; }},
   };
+  return all;
+}
+
+std::vector<SummaryKey> point_load_figures() {
+  std::vector<SummaryKey> out = simulated();
+  for (const auto& part : {declared(layers_rows()), declared(ring_rows())}) {
+    out.insert(out.end(), part.begin(), part.end());
+  }
+  return out;
 }
 
 }  // namespace grainfield::coupling

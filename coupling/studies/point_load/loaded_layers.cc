@@ -7,6 +7,7 @@
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/base.h"
 #include "coupling/run/study_result.h"
+#include "coupling/studies/point_load/figures.h"
 #include "coupling/studies/point_load/simulation.h"
 
 namespace grainfield::coupling {
@@ -65,12 +66,7 @@ Observations LoadedLayers::observed(const Ensemble& base, const Field& map,
 
 void LoadedLayers::add_own_figures(Summary& summary) const {
   add_figures(summary, figures);
-  summary["layer.depth"] = layer.depth;
-  if (dim == 2)
-    summary["layer.F_over_h"] = force / layer.depth;
-  else
-    summary["layer.F_over_h2"] = force / (layer.depth * layer.depth);
-  summary["layer.mean_diameter"] = layer.diameter;
+  add_values(layers_rows(), {layer.depth, force, layer.diameter, dim}, summary);
   for (const MethodAverages& a : methods) add_method_figures(summary, a, component());
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/fit/fit_report.h"
+#include "coupling/fit/fit_tables.h"
 #include "coupling/report/judgement.h"
 #include "coupling/run/comparison_page.h"
 
@@ -71,7 +73,11 @@ void add_base_before(Report& report, const PointLoadReport& in) {
 
 void add_tables(Report& report, const PointLoadReport& in) {
   const Comparison& c = in.comparison;
-  report.sections.emplace_back(distances_table(c, "F/h"));
+  if (in.fits != nullptr) {
+    for (Section& table : fit_tables(*in.fits)) report.sections.push_back(std::move(table));
+  } else {
+    report.sections.emplace_back(distances_table(c, "F/h"));
+  }
   report.sections.emplace_back(shapes_table(c, "F/h"));
   add_rows(report, "Figures", in.figures);
   add_rows(report, "How it was made", in.made);
@@ -87,11 +93,16 @@ Report point_load_report(const PointLoadReport& in) {
       fmt::format("F = {:.4g} N on a layer {:.4g} m deep; {} realization{}", c.scale.load,
                   c.scale.h, c.realizations, c.realizations == 1 ? "" : "s");
   add_verdict(report, c.judgement);
+  if (in.fits != nullptr) {
+    for (Section& picture : fit_pictures(*in.fits)) report.sections.push_back(std::move(picture));
+  }
   if (in.loaded) report.sections.emplace_back(packing("The loaded packing", *in.loaded));
   if (in.loaded && in.unloaded)
     report.sections.emplace_back(packing("What the load changes", *in.loaded, in.unloaded));
-  add_profiles(report, c);
-  add_maps(report, in);
+  if (in.fits == nullptr) {
+    add_profiles(report, c);
+    add_maps(report, in);
+  }
   add_base_before(report, in);
   if (in.loaded)
     report.sections.emplace_back(contact_angles("Directions of the contacts", *in.loaded));
@@ -99,7 +110,9 @@ Report point_load_report(const PointLoadReport& in) {
   return report;
 }
 
-Report layer_page(const StudyResult& result, const Realization* first) {
+namespace {
+
+PointLoadReport report_of(const StudyResult& result, const Realization* first) {
   PointLoadReport page;
   page.title = title_of(result.value);
   if (first != nullptr) {
@@ -112,6 +125,19 @@ Report layer_page(const StudyResult& result, const Realization* first) {
   page.models = result.model_maps;
   page.figures = figure_rows(result);
   page.made = origin_rows(result);
+  return page;
+}
+
+}  // namespace
+
+Report layer_page(const StudyResult& result, const Realization* first) {
+  return point_load_report(report_of(result, first));
+}
+
+Report fitted_layer_page(const StudyResult& result, const Realization* first,
+                         const EnsembleFits& fits) {
+  PointLoadReport page = report_of(result, first);
+  page.fits = &fits;
   return point_load_report(page);
 }
 

@@ -6,6 +6,7 @@
 
 #include "coupling/compare/compare.h"
 #include "coupling/field.h"
+#include "coupling/fit/fits.h"
 #include "coupling/report/report.h"
 #include "coupling/run/study_result.h"
 #include "dem/snapshot/snapshot.h"
@@ -20,14 +21,18 @@ struct PointLoadReport {
   Field base_unloaded;           ///< mean base_profile before loading; may be empty
   Field map;                     ///< mean response on a grid in the models' frame; may be empty
   std::vector<ModelMap> models;  ///< on map.points; the nearest one's residual is drawn
-  ReportRows figures;            ///< results worth a table
-  ReportRows made;               ///< case, seed, version, times
+  const EnsembleFits* fits = nullptr;  ///< drawn in place of profiles and maps; may be null
+  ReportRows figures;                  ///< results worth a table
+  ReportRows made;                     ///< case, seed, version, times
 };
 
 Report point_load_report(const PointLoadReport& input);
 
 /// That page of a result with snapshots "unloaded" and "loaded", or of models alone (`first` null).
 Report layer_page(const StudyResult& result, const Realization* first);
+/// The same where the models have the constants of these fits.
+Report fitted_layer_page(const StudyResult& result, const Realization* first,
+                         const EnsembleFits& fits);
 /// What a sweep over loaded layers shows of each.
 std::vector<OverviewColumn> layer_overview();
 

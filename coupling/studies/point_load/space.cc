@@ -12,6 +12,7 @@
 #include "coupling/compare/ring.h"
 #include "coupling/observe/seen_models.h"
 #include "coupling/run/comparison_page.h"
+#include "coupling/studies/point_load/figures.h"
 #include "coupling/studies/point_load/loaded_layers.h"
 #include "coupling/studies/point_load/predicted.h"
 #include "coupling/studies/point_load/space_page.h"
@@ -215,26 +216,16 @@ class SpaceAnalysis {
     return sum / all_.force;
   }
 
-  // Elliptic models have a peak, hyperbolic ones a ring.
-  void add_ring(Summary& summary) const {
-    const double unit = all_.force / (all_.layer.depth * all_.layer.depth);
-    const RingAgainstAxis found = ring_against_axis(
-        radii_.own(), -base_rings_.samples("sigma_zz") / unit, all_.kernel->independent_length());
-    if (found.word().empty()) return;
-    summary["response.ring_less_axis"] = found.difference;
-    summary["response.ring_less_axis.standard_error"] = found.error;
-    summary["response.ring_at"] = found.at / all_.layer.depth;
-    summary["response.ring_p"] = found.p;
-    summary["response.ring"] = found.word();
-  }
-
   void add_own_figures(Summary& summary) const {
-    add_ring(summary);
+    const double unit = all_.force / (all_.layer.depth * all_.layer.depth);
+    // Elliptic models have a peak, hyperbolic ones a ring.
+    const RingAgainstAxis ring = ring_against_axis(
+        radii_.own(), -base_rings_.samples("sigma_zz") / unit, all_.kernel->independent_length());
+    add_values(ring_rows(), {ring, all_.layer.depth, all_.half, force_within()}, summary);
+    if (!ring.word().empty()) summary["response.ring_less_axis.standard_error"] = ring.error;
     all_.add_own_figures(summary);
     add_figures(summary, predicted_.figures);
     if (!predicted_.refusal.empty()) summary["predicted.refusal"] = predicted_.refusal;
-    summary["response.within_radius"] = all_.half;
-    summary["response.within_over_load"] = force_within();
   }
 
   LoadedLayers all_;

@@ -1,16 +1,21 @@
 #include "coupling/studies/point_load/study.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/base.h"
+#include "coupling/fit/fit_keys.h"
 #include "coupling/models/subject.h"
+#include "coupling/observe/setup.h"
 #include "coupling/run/averaging_setup.h"
-#include "coupling/run/ensemble.h"
+#include "coupling/run/finished_runs.h"
 #include "coupling/run/grain_keys.h"
+#include "coupling/studies/point_load/finished_layers.h"
+#include "coupling/studies/point_load/fitted.h"
 #include "coupling/studies/point_load/keys.h"
 #include "coupling/studies/point_load/loaded_layers.h"
 #include "coupling/studies/point_load/page.h"
@@ -129,6 +134,17 @@ void check_point_load(const Case& value) {
                     "= 0 (spheres are loaded with so many weights of a grain otherwise)",
                     load.force, load.weights));
   }
+  if (const auto& files = value.get<GrainFiles>().files; p.dim == 3 && !files.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "grains.files: found {} with packing.dim = 3, allowed: none in 3D", files.size()));
+  }
+  if (const auto& fitted = value.get<FitSetup>().models; p.dim == 3 && !fitted.empty()) {
+    throw std::invalid_argument(
+        fmt::format("fit.models: found \"{}\" with packing.dim = 3, allowed: none in 3D, where "
+                    "compare.models names models with their constants",
+                    fitted.front()));
+  }
+  check_fit(value);
   require_subject(value.models, Subject::load, p.dim, "compare.models");
   for (const ModelChoice& model : value.models) {
     const auto& taken = predicted_labels();
@@ -146,8 +162,16 @@ void check_point_load(const Case& value) {
 Study point_load_study() {
   Study out;
   out.name = "point-load";
-  out.meaning = "grains under a load on one of them against continuum models";
-  out.sections = {kPackingKeys, kMaterialKeys, kMotionKeys, kRestKeys, kLoadKeys, kAverageKeys};
+  out.meaning =
+      "grains under a load on one of them: stress models compared with the response or fitted to "
+      "it";
+  out.former = {{"point-load-verdict",
+                 {fmt::format("fit.models=[\"{}\"]", fmt::join(kUsualLayerModels, "\", \"")),
+                  "fit.finite_elements=[\"fe_elastic_layer\", \"fe_orthotropic_layer\"]",
+                  "fit.bootstrap=100"},
+                 {{"verdict", "fit"}}}};
+  out.sections = {kGrainFilesKeys, kPackingKeys, kMaterialKeys, kMotionKeys,
+                  kRestKeys,       kLoadKeys,    kAverageKeys};
   out.material = [](Case& c) -> dem::MaterialSetup& {
     return c.get<dem::PointLoadSetup>().material;
   };
@@ -162,18 +186,17 @@ Study point_load_study() {
     return averaged_values(average, average.depths.size() + 1);
   };
   out.figures = {point_load_figures, predicted_figures};
+  fit_layer_models(out);
+  out.without = {"fit.heights",  "fit.leave_out", "fit.width_diameters",
+                 "fit.left_deg", "fit.right_deg", "fit.friction_deg",
+                 "fit.huber"};
   out.fills = {"F", "h", "dim", "depth"};
-  out.make_run = [](const Case& value, std::int64_t number, int threads) {
-    return dem::make_point_load_run(value.get<dem::PointLoadSetup>(),
-                                    realization_seed(value, number), threads);
-  };
-  out.foresee = [](const Case& value, std::int64_t draws) {
-    return dem::foresee_point_load(value.get<dem::PointLoadSetup>(), realization_seeds(value),
-                                   draws);
-  };
+  out.make_run = make_layer;
+  out.foresee = foresee_layer;
   out.left_unused = [](const Case& value) -> std::string {
     const auto& setup = value.get<dem::PointLoadSetup>();
-    if (setup.packing.dim == 2 || setup.load.radius == 0) return "";
+    if (setup.packing.dim == 2) return unused_runs(value, kLayerStates, kLayerStudy);
+    if (setup.load.radius == 0) return "";
     return fmt::format(
         "load.radius: found {:g}: the models beside stay those of a load on one point",
         setup.load.radius);
@@ -182,6 +205,7 @@ Study point_load_study() {
     if (value.get<dem::PointLoadSetup>().packing.dim == 3) {
       return analyse_space_load(value, files, threads);
     }
+    if (!value.get<FitSetup>().models.empty()) return analyse_fitted_load(value, files, threads);
     return analyse_point_load(value, files, threads);
   };
   out.dimension = [](const Case& value) { return value.get<dem::PointLoadSetup>().packing.dim; };

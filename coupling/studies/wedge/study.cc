@@ -12,6 +12,7 @@
 #include "coupling/output/triangles_vtu.h"
 #include "coupling/studies/point_load/page.h"
 #include "coupling/studies/wedge/analysis.h"
+#include "coupling/studies/wedge/figures.h"
 #include "coupling/studies/wedge/keys.h"
 
 namespace grainfield::coupling {
@@ -66,47 +67,30 @@ void WedgeAnalysis::compare_with(const WedgeMember& reference, StudyResult& out)
 void WedgeAnalysis::summarize(StudyResult& out) const {
   const double unit = setup_.rho_g * height_;
   double seconds = 0;
-  std::int64_t heaps = 0, equilibria = 0;
-  std::map<std::string, std::int64_t> words{{"dip", 0}, {"plateau", 0}, {"peak", 0}};
+  WedgeCounts counts;
   std::string sentence;
   for (const WedgeMember& m : members_) {
     add_model(out.summary, m.choice, m.figures, m.seconds);
     seconds += m.seconds;
-    heaps += m.heap;
-    const std::string own = "wedge." + m.choice.label + ".";
-    if (!m.failed.empty()) {
-      out.summary[own + "failed"] = m.failed;
-      continue;
-    }
-    out.summary[own + "base_shape"] = m.shape.word;
-    out.summary[own + "base_axis"] = m.shape.axis / unit;
-    out.summary[own + "base_largest"] = m.shape.largest / unit;
-    out.summary[own + "base_largest_at"] = m.shape.largest_at / height_;
-    out.summary[own + "dip_ratio"] = m.shape.dip_ratio;
-    if (!m.heap) continue;
-    ++equilibria;
-    ++words[m.shape.word];
-    if (!m.nearest.empty()) {
-      out.summary[own + "nearest"] = m.nearest;
-      out.summary[own + "nearest_rel_l2"] = m.nearest_rel_l2;
-    }
+    counts.heaps += m.heap;
+    add_values(wedge_member_rows(), {m, unit, height_}, out.summary,
+               "wedge." + m.choice.label + ".");
+    if (!m.failed.empty() || !m.heap) continue;
+    ++counts.equilibria;
+    ++counts.words[m.shape.word];
     if (mapped_) continue;
     sentence += fmt::format("{}{}: {} ({:.3f} rho g h on the axis)", sentence.empty() ? "" : "; ",
                             m.choice.label, m.shape.word, m.shape.axis / unit);
     if (!m.nearest.empty())
       sentence += fmt::format(", nearest {} ({:.1f} %)", m.nearest, 100 * m.nearest_rel_l2);
   }
-  out.summary["wedge.heaps"] = heaps;
-  out.summary["wedge.equilibria"] = equilibria;
-  out.summary["wedge.dips"] = words["dip"];
-  out.summary["wedge.plateaus"] = words["plateau"];
-  out.summary["wedge.peaks"] = words["peak"];
+  add_values(wedge_rows(), counts, out.summary, "wedge.");
   out.summary["time.continuum_s"] = seconds;
   if (sentence.empty())
     sentence = fmt::format(
         "{} heaps, {} with an equilibrium: {} with a dip under the apex, {} with a plateau, {} "
         "with a peak",
-        heaps, equilibria, words["dip"], words["plateau"], words["peak"]);
+        counts.heaps, counts.equilibria, counts.of("dip"), counts.of("plateau"), counts.of("peak"));
   // No grains here: nothing to support.
   out.comparison.judgement = {};
   out.comparison.judgement.findings = {sentence + "."};

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Judges every ensemble whose states are kept anew: judge.py PROGRAM [-o FOLDER]
 
-Unpacks the states that fits.toml names, runs the fit of each with PROGRAM (a grainfield of today), prints
+Unpacks the states that fits.toml names, runs the case of each with PROGRAM (a grainfield of today), prints
 the first line of its verdict and takes the summaries of fits that the page has into
 docs/reproduction/results/, as page.py --add does. Ends with 1 when a run fails. Needs Python 3.11.
 """
@@ -45,7 +45,8 @@ def main() -> int:
             except subprocess.CalledProcessError as error:
                 print(f"judge.py: {fit['name']}: {error.stderr.strip()}", file=sys.stderr)
                 return 1
-            verdict = json.loads((out / "summary.json").read_text())["verdict.sentence"]
+            summary = next(out.glob("*/summary.json"), out / "summary.json")  # of a sweep its member's
+            verdict = json.loads(summary.read_text())["verdict.sentence"]
             print(f"{fit['name']} ({fit['states']}): {verdict}", flush=True)
             if fit["name"] == fit["case"]:
                 add += ["--add", out]

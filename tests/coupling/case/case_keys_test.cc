@@ -97,6 +97,22 @@ TEST(Keys, OfOneStudyWithItsOwnDefaults) {
   EXPECT_THAT(keys_text("pair."), Not(HasSubstr("[material]")));
 }
 
+// [fit] is of heaps and of layers: each study lists its own words and keys, the key alone all.
+TEST(Keys, WordsOfOneStudyAreListedWithIt) {
+  const std::string heaps = keys_text("pile"), layers = keys_text("point-load");
+  EXPECT_THAT(heaps, HasSubstr("hydrostatic | cantelaube_minus"));
+  EXPECT_THAT(heaps, HasSubstr("cantelaube_minus; "));  // with its constants
+  EXPECT_THAT(heaps, Not(HasSubstr("osl_layer_absorbing")));
+  EXPECT_THAT(heaps, Not(HasSubstr("coverage_draws")));
+  EXPECT_THAT(layers, HasSubstr("flamant | layer_smooth | layer_rough"));
+  EXPECT_THAT(layers, HasSubstr("layer_rough (nu)"));
+  EXPECT_THAT(layers, Not(HasSubstr("cantelaube_minus")));
+  EXPECT_THAT(layers, Not(HasSubstr("left_deg = ")));
+  const std::string both = keys_text("fit.models");
+  EXPECT_THAT(both, HasSubstr("; point-load: flamant; "));
+  EXPECT_THAT(both, HasSubstr("; pile: hydrostatic; "));
+}
+
 TEST(Keys, UnknownSectionNamesTheNearest) {
   try {
     keys_text("materiel");

@@ -68,10 +68,107 @@ TEST(ReadCase, AFormerStudyIsThePresentOneWithWhatItMeant) {
   EXPECT_EQ(read(write_case(plain)).get<FitSetup>().models, kUsualHeapModels);
 }
 
+// point-load-verdict had a section [verdict], also in variants and in what a sweep varies.
+TEST(ReadCase, AFormerStudysSectionIsThePresentOne) {
+  const Folder folder;
+  const auto read = [&](const std::string& text, const Overrides& set = {}, bool quick = false) {
+    return read_case(folder.write("x.toml", text), quick, set);
+  };
+  const std::string study = "study = \"point-load-verdict\"\n";
+  const Case plain = read(study);
+  EXPECT_EQ(plain.study, "point-load");
+  EXPECT_TRUE(plain.models.empty());
+  const FitSetup& usual = plain.get<FitSetup>();
+  EXPECT_EQ(usual.models, kUsualLayerModels);
+  EXPECT_THAT(usual.finite_elements,
+              ::testing::ElementsAre("fe_elastic_layer", "fe_orthotropic_layer"));
+  EXPECT_EQ(usual.bootstrap, 100);
+  const Case again = read(write_case(plain));
+  EXPECT_EQ(write_case(again), write_case(plain));
+
+  const std::string text = study +
+                           "[verdict]\nfinite_elements = []\nkernel = [2]\n[quick.verdict]\n"
+                           "bootstrap = 20\n[sweep]\nkey = \"variant\"\nvalues = [\"a\", \"b\"]\n"
+                           "[variant.a]\nverdict.base = false\n[variant.b.verdict]\nmodels = "
+                           "[\"flamant\"]\n";
+  const Case one = read(text, {"verdict.coverage=[4]"});
+  EXPECT_TRUE(one.get<FitSetup>().finite_elements.empty());
+  EXPECT_EQ(one.get<FitSetup>().bootstrap, 100);
+  EXPECT_EQ(one.get<FitSetup>().coverage, std::vector<double>{4});
+  const std::vector<SweepCase> members = sweep_cases(one);
+  ASSERT_EQ(members.size(), 2u);
+  EXPECT_FALSE(members[0].value.get<FitSetup>().base);
+  EXPECT_EQ(members[0].value.get<FitSetup>().models, kUsualLayerModels);
+  EXPECT_EQ(members[1].value.get<FitSetup>().models, std::vector<std::string>{"flamant"});
+  EXPECT_EQ(read(text, {}, true).get<FitSetup>().bootstrap, 20);
+  const Case swept =
+      read(study + "[sweep]\nkey = \"verdict.bootstrap\"\nvalues = [\"0\", \"10\"]\n", {});
+  EXPECT_EQ(swept.sweep.key, "fit.bootstrap");
+
+  EXPECT_THAT(complaint("study = \"point-load\"\n[verdict]\nbase = false\n"),
+              HasSubstr("x.toml:3: verdict: found the section's former name, now: fit"));
+}
+
+// Heaps and layers share [fit], with words and keys of their own: one line for each mistake.
+TEST(ReadCase, MistakesOfFitsNameWhatTheStudyTakes) {
+  const auto fit = [](const std::string& study, const std::string& lines) {
+    return complaint("study = \"" + study + "\"\n[fit]\n" + lines + "\n");
+  };
+  const auto layer = [&](const std::string& line) {
+    return fit("point-load", "models = [\"flamant\"]\n" + line);
+  };
+  const auto heap = [&](const std::string& line) {
+    return fit("pile", "models = [\"osl\"]\n" + line);
+  };
+  EXPECT_EQ(layer(""), "");
+  EXPECT_EQ(fit("point-load", "models = [\"layer_ruff\"]"),
+            "x.toml:3: fit.models: found \"layer_ruff\", allowed: flamant | layer_smooth | "
+            "layer_rough | orthotropic_half_plane | orthotropic_layer_smooth | "
+            "orthotropic_layer_rough | osl_layer_absorbing | osl_layer_reflecting; did you mean "
+            "layer_rough?");
+  EXPECT_EQ(fit("pile", "models = [\"cantelaub\"]"),
+            "x.toml:3: fit.models: found \"cantelaub\", allowed: " +
+                allowed(*find_key("fit.models"), "pile") + "; did you mean cantelaube?");
+  // A model of the other specimen is no word here.
+  EXPECT_THAT(fit("point-load", "models = [\"bcc\"]"), HasSubstr("x.toml:3: fit.models: "));
+  EXPECT_THAT(fit("pile", "models = [\"layer_rough\"]"), HasSubstr("x.toml:3: fit.models: "));
+  EXPECT_EQ(layer("finite_elements = [\"fe_osl_wedge\"]"),
+            "x.toml:4: fit.finite_elements: found \"fe_osl_wedge\", allowed: "
+            "fe_elastic_half_space | fe_elastic_layer | fe_orthotropic_layer | fe_osl_layer; did "
+            "you mean fe_osl_layer?");
+  EXPECT_EQ(heap("finite_elements = [\"fe_osl_layer\"]"),
+            "x.toml:4: fit.finite_elements: found \"fe_osl_layer\", allowed: fe_osl_wedge | "
+            "fe_mohr_coulomb_wedge; did you mean fe_osl_wedge?");
+  for (const auto& bad : {layer("kernel = [0.001]"), heap("kernel = [0.001]")}) {
+    EXPECT_EQ(bad, "x.toml:4: fit.kernel: found 0.001, allowed: 0.01 to 100");
+  }
+  for (const auto& bad : {layer("bootstrap = -1"), heap("bootstrap = -1")}) {
+    EXPECT_EQ(bad, "x.toml:4: fit.bootstrap: found -1, allowed: 0 to 10000");
+  }
+  EXPECT_EQ(layer("coverage = [2]"), "x.toml:4: fit.coverage: found 2, allowed: 3 to 1e+06");
+  EXPECT_EQ(layer("base = 3"),
+            "x.toml:4: fit.base: found 3 (integer), expected a boolean, written true or false");
+  EXPECT_EQ(layer("kernal = [1]"), "x.toml:4: fit.kernal: unknown key; did you mean fit.kernel?");
+  // Keys of the other study's fits.
+  EXPECT_EQ(layer("heights = [0.2]"),
+            "x.toml:4: fit.heights: has no meaning for study = \"point-load\"");
+  EXPECT_EQ(heap("base = false"), "x.toml:4: fit.base: has no meaning for study = \"pile\"");
+}
+
+// A study without models of [fit] compares with its usual ones; those of [fit] take their place.
+TEST(ReadCase, FittedModelsTakeThePlaceOfTheUsualOnes) {
+  EXPECT_FALSE(accepted("study = \"point-load\"\n").models.empty());
+  EXPECT_TRUE(accepted("study = \"point-load\"\n[fit]\nmodels = [\"flamant\"]\n").models.empty());
+  EXPECT_THAT(
+      complaint("study = \"point-load\"\n[compare]\nmodels = [\"layer\"]\n[fit]\nmodels = "
+                "[\"flamant\"]\n"),
+      HasSubstr("x.toml:3: compare.models: found \"layer\", allowed: none with fit.models"));
+}
+
 TEST(ReadCase, FitsOfPilesNeedModelsAndComparisonsNone) {
   EXPECT_THAT(complaint("study = \"pile\"\n[compare]\nmodels = [\"bcc\"]\n[fit]\nmodels = "
                         "[\"osl\"]\n"),
-              HasSubstr("compare.models: found bcc, allowed: none with fit.models"));
+              HasSubstr("compare.models: found \"bcc\", allowed: none with fit.models"));
   const Case value = accepted("study = \"pile\"\n[fit]\nheights = [0.2]\n");
   EXPECT_THAT(
       value.without_effect,

@@ -38,10 +38,8 @@ const std::vector<Room>& rooms() {
       // Each study by itself, and what it takes from others of its kind.
       {"studies/sample/simulation", {}},
       {"studies/point_load",
-       {"averaging", "case", "compare", "elastic_constants", "models", "observe", "output",
-        "report", "run"}},
-      {"studies/point_load_verdict",
-       {"case", "fit", "judge", "models", "observe", "report", "run", "studies/point_load"}},
+       {"averaging", "case", "compare", "elastic_constants", "fit", "judge", "models", "observe",
+        "output", "report", "run"}},
       {"studies/pile",
        {"averaging", "case", "compare", "fit", "heap", "models", "observe", "output", "report",
         "run", "statistics"}},

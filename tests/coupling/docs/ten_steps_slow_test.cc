@@ -129,9 +129,6 @@ std::vector<Overrides> beginnings(const std::string& study) {
         with({"packing.kind=random", "packing.shape=superellipsoid", bodies,
               "packing.radius_min=0.003", "packing.radius_max=0.0035"})};
   }
-  if (study == "point-load-verdict") {
-    return {{}, {"packing.sizes=mono", "packing.columns=20", "packing.rows=6"}};
-  }
   if (study.starts_with("pile")) return {{}, {"shape.kind=disk", "material.law=linear"}};
   if (study == "sample") {
     const std::string small = "sample.grains=60";

@@ -1,4 +1,4 @@
-// The study point-load-verdict from case file to report; variants; layers from files.
+// Models fitted to layers under a point load, from case file to report; variants; layers from files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ TEST(LayerVerdictRun, FromCaseToReport) {
                                              (folder / "out/uneven/snapshots.h5") + "\"]\n"));
   const Output second =
       program("run " + from + " -o " + (folder / "from") +
-              " --set sweep.values=[\\\"uneven\\\"] --set 'verdict.kernel=[1, 40]'");
+              " --set sweep.values=[\\\"uneven\\\"] --set 'fit.kernel=[1, 40]'");
   ASSERT_EQ(second.code, 0) << second.err;
   EXPECT_EQ(read_text(folder / "from/uneven/fits.csv"), read_text(folder / "out/uneven/fits.csv"));
   const std::string verdict = read_text(folder / "from/uneven/verdict.md");
@@ -85,7 +85,7 @@ TEST(LayerVerdictRun, MistakesAreNamed) {
   text.replace(text.find("\"uneven\"]"), 9, "\"unevn\"]");
   EXPECT_THAT(refusal(folder, text),
               HasSubstr("found \"unevn\", allowed: even, uneven; did you mean uneven"));
-  EXPECT_THAT(refusal(folder, tiny_verdict("[verdict.models]\n")), HasSubstr("verdict"));
+  EXPECT_THAT(refusal(folder, tiny_verdict("[fit.models]\n")), HasSubstr("fit.models"));
   text = tiny_verdict();
   text.replace(text.find("\"flamant\""), 9, "\"flamand\"");
   EXPECT_THAT(refusal(folder, text), HasSubstr("found \"flamand\", allowed: flamant |"));

@@ -280,8 +280,14 @@ TEST(SpaceLoadRun, RefusesWhatDoesNotHoldInSpace) {
               HasSubstr("packing.width: found 0.02"));
   EXPECT_THAT(complaint("study = \"point-load\"\n[load]\nweights = 2\n"),
               HasSubstr("load.weights: found 2"));
-  EXPECT_THAT(complaint("study = \"point-load-verdict\"\n[packing]\ndim = 3\n"),
-              HasSubstr("packing.dim"));
+  const std::string space =
+      "study = \"point-load\"\n[packing]\ndim = 3\nkind = \"random\"\n[material]\nlaw = "
+      "\"hertz\"\n";
+  EXPECT_THAT(complaint(space + "[fit]\nmodels = [\"flamant\"]\n"),
+              HasSubstr("x.toml:8: fit.models: found \"flamant\" with packing.dim = 3"));
+  EXPECT_THAT(
+      complaint(space + "[grains]\nfiles = [\"a.h5\"]\n[compare]\nmodels = [\"boussinesq\"]\n"),
+      HasSubstr("x.toml:8: grains.files: found 1 with packing.dim = 3, allowed: none"));
 }
 
 TEST(BaseStress, HoldsTheForceAndKnowsImages) {

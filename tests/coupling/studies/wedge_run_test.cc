@@ -100,7 +100,7 @@ TEST(WedgeRun, TrianglesAndLinesAsVtu) {
   const std::string text = triangles_vtu(mesh);
   EXPECT_THAT(text, HasSubstr("NumberOfPoints=\"3\" NumberOfCells=\"1\""));
   EXPECT_THAT(text, HasSubstr("Name=\"height\""));
-  EXPECT_THAT(text, HasSubstr("0 1 2\n"));
+  EXPECT_THAT(text, HasSubstr(">0 1 2 </DataArray>"));
   mesh.in_triangles[0].values.resize(2);
   EXPECT_THROW(triangles_vtu(mesh), std::invalid_argument);
   Eigen::MatrixXd line(3, 2);
