@@ -39,7 +39,7 @@ double parse(const ModelInfo& info, const Parameter& parameter, const std::strin
   if (text == "free")
     throw BadParameter(
         fmt::format("model {}: {} = free is for `grainfield fit` and for fit.models "
-                    "and verdict.models of a case; here give a number: {}",
+                    "of a case; here give a number: {}",
                     info.name, parameter.name, allowed(parameter)));
   const std::optional<double> value = parse_number(text);
   if (!value || !std::isfinite(*value))

@@ -259,11 +259,11 @@ class Assembly {
   /// Decides whether ids or the places of both ends tell the bodies of a table's contacts.
   void settle_lines(const ForeignTable& table, ContactColumns& columns);
   Ends ends_of_line(const ContactColumns& columns, const ForeignRow& row) const;
-  /// Throws where the id of a row is that of a grain and of a wall.
   /// Whether a normal of a round pair, or at a wall, points from j to i.
   bool points_backwards(const dem::Contact& c, const dem::Vec3& normal) const;
   void count_parts(const ContactColumns& columns, const ForeignRow& row);
   bool names_other_grain(const ContactColumns& c, const ForeignRow& row, int digits) const;
+  /// Throws where the id of a row is that of a grain and of a wall.
   void refuse_two_meanings(const ForeignRow& row, const ForeignColumn& column) const;
   [[noreturn]] void refuse_unknown(const ForeignRow& row, const ForeignColumn& column) const;
   /// A force of normal and tangential size, on the first grain.

@@ -102,11 +102,11 @@ void Assembly::tell_tally() {
                                  [](const ContactRow& row) { return row.contact.force.isZero(0); });
   tell_sizes();
   if (tally_.fn_below > 1 && kManyOfOneSign * tally_.fn_above < tally_.fn_below)
-    out_.warnings.push_back(
-        fmt::format("fn is below 0 in {} of {} contacts, which pulls: where compression is "
-                    "negative, change the "
-                    "sign of the column (--flip-forces turns ftx ... too)",
-                    tally_.fn_below, tally_.fn_above + tally_.fn_below));
+    out_.warnings.push_back(fmt::format(
+        "fn is below 0 in {} of {} contacts, which pulls: where compression is "
+        "negative, change the sign of this column in the file; --flip-forces would turn "
+        "ftx ... too",
+        tally_.fn_below, tally_.fn_above + tally_.fn_below));
   if (tally_.oblique > 1 &&
       kManyOblique * static_cast<double>(tally_.parts) < static_cast<double>(tally_.oblique))
     out_.warnings.push_back(fmt::format(

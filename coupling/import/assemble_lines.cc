@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "coupling/import/assemble_contacts.h"
 #include "dem/snapshot/images.h"
@@ -70,12 +69,20 @@ void Assembly::settle_lines(const ForeignTable& table, ContactColumns& c) {
   // A column of the grain and one of the wall tell both, whichever end of the line stands first.
   c.by_line = !c.i || !(c.j || c.wall);
   if (c.by_line) return;
-  // Ids of meshes and triangles, as LIGGGHTS writes them, or counted from another number.
-  long long all = 0, others = 0;
+  // Ids of meshes and triangles, as LIGGGHTS writes them, or counted from another number: then most
+  // rows contradict their ends. A few that do are mistakes, in the ids or in the places.
+  long long all = 0, others = 0, line_of_first = 0;
   std::string first;
+  const auto has_ends = [&](const ForeignRow& row) {
+    const auto has = [&](const ForeignColumn& column) { return !column || !row.empty(column); };
+    return std::all_of(c.line.begin(), c.line.end(), [&](const ColumnTriple& end) {
+      return has(end.x) && has(end.y) && has(end.z);
+    });
+  };
   reader_.read(table, [&](const ForeignRow& row) {
-    const auto grains = grains_of_line(c, row);
     ++all;
+    if (!has_ends(row)) return;
+    const auto grains = grains_of_line(c, row);
     if (!grains[0] && !grains[1]) return;
     const std::string told[] = {std::string(row.text(c.i)),
                                 c.j ? std::string(row.text(c.j)) : std::string()};
@@ -88,6 +95,7 @@ void Assembly::settle_lines(const ForeignTable& table, ContactColumns& c) {
     };
     if ((!grains[0] || names(*grains[0])) && (!grains[1] || names(*grains[1]))) return;
     if (others++ > 0) return;
+    line_of_first = row.line;
     const auto end = [&](std::size_t k) {
       return grains[k] ? fmt::format("grain {}",
                                      out_.snapshot.grains[static_cast<std::size_t>(*grains[k])].id)
@@ -96,6 +104,12 @@ void Assembly::settle_lines(const ForeignTable& table, ContactColumns& c) {
     first = fmt::format("{} {} from {} to {}", told[0], told[1], end(0), end(1));
   });
   if (others == 0) return;
+  if (2 * others <= all)
+    throw std::invalid_argument(fmt::format(
+        "{}:{}: {} and {} name other grains than the ends of the row join: {} ({} of {} rows do "
+        "so); "
+        "mend these rows, or leave out the columns that are wrong",
+        table.file, line_of_first, c.i.name, (c.j ? c.j : c.wall).name, first, others, all));
   c.by_line = c.of_meshes = true;
   out_.warnings.push_back(fmt::format(
       "{}: {} of {} rows join other grains than {} and {} name (the first: {}): the places "

@@ -141,6 +141,7 @@ void StepList::settle(bool by_time, const ReadKeys& read_keys) {
   read_keys_ = read_keys;
   if (by_time) number_by_time();
   drop_step_numbers();
+  bool stepless = false, zero = false;  // besides tables of walls
   for (; !entries_.empty(); entries_.pop_front()) {
     Entry& entry = entries_.front();
     ForeignTable& table = entry.table;
@@ -151,6 +152,8 @@ void StepList::settle(bool by_time, const ReadKeys& read_keys) {
     }
     stepped_ = stepped_ || table.step.has_value();
     if (!table.step && without_step_.empty()) without_step_ = table.file;
+    if (entry.kind != TableKind::walls)
+      (table.step ? zero : stepless) |= table.step.value_or(0) == 0;
     StepTables& tables = steps_[table.step.value_or(0)];
     const bool contacts = entry.kind == TableKind::contacts;
     if (contacts && std::find(contact_kinds_.begin(), contact_kinds_.end(), table.columns.get()) ==
@@ -164,6 +167,14 @@ void StepList::settle(bool by_time, const ReadKeys& read_keys) {
   // Of one file, of which nothing is whole.
   if (steps_.empty()) throw std::invalid_argument(broken_);
   if (!stepped_) return;
+  if (stepless && zero && steps_.size() > 1) {
+    std::vector<long long> all;
+    for (const auto& [step, tables] : steps_) all.push_back(step);
+    throw std::invalid_argument(fmt::format(
+        "{}: tells no step, and there are the steps {}: of which is it? Give the tables "
+        "of its state alone",
+        without_step_, list_of(all)));
+  }
   for (auto& [step, tables] : steps_) {
     drop_repeated(tables.grains, TableKind::grains);
     drop_repeated(tables.contacts, TableKind::contacts);

@@ -60,7 +60,10 @@ Keys keys_of(std::string_view line) {
 
 class XyzScan {
  public:
-  explicit XyzScan(const std::string& file) : lines_(file) { table_.file = file; }
+  explicit XyzScan(const std::string& file) : lines_(file) {
+    table_.file = file;
+    table_.kind = TableKind::grains;  // whatever forces stand beside their places
+  }
 
   // Nothing where the file does not begin as one of XYZ.
   std::optional<std::vector<ForeignTable>> tables() {
@@ -222,10 +225,12 @@ class XyzScan {
   void read_over(long long count) {
     std::string_view line;
     for (long long n = 0; n < count; ++n) {
-      bool there = lines_.next(line);
-      if (there && !trimmed(line).empty()) continue;
-      table_.broken = fmt::format("{}: truncated: {} rows are announced, {} are there",
-                                  lines_.where(), count, n);
+      const bool there = lines_.next(line) && !trimmed(line).empty();
+      const bool cut = there && n + 1 == count && lines_.unfinished();
+      if (there && !cut) continue;
+      table_.broken =
+          fmt::format("{}: truncated: {} rows are announced, {} are there{}", lines_.where(), count,
+                      n, cut ? " (the last one ends without a line end)" : "");
       return;
     }
   }

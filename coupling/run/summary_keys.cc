@@ -58,9 +58,7 @@ std::vector<SummaryKey> model_figures() {
   return out;
 }
 
-}  // namespace
-
-const std::vector<SummaryKey>& summary_keys() {
+std::vector<SummaryKey> declared_keys() {
   static const std::vector<SummaryKey> of_runs = {
       {"case.name", "text", "name of the case file"},
       {"case.command", "text", "what was run, without folder and threads (they change no number)"},
@@ -181,25 +179,31 @@ const std::vector<SummaryKey>& summary_keys() {
       {"*.most", "-", "largest over realizations, in the unit of the figure"},
       {"*.standard_error", "-", "standard error over realizations, in the unit of the figure"},
   };
-  static const std::vector<SummaryKey> all = [] {
-    auto joined = of_runs;
-    const auto add = [&](const std::vector<SummaryKey>& part) {
-      for (const SummaryKey& key : part) {
-        const bool there = std::any_of(joined.begin(), joined.end(), [&](const SummaryKey& other) {
-          return other.pattern == key.pattern;
-        });
-        if (!there) joined.push_back(key);
-      }
-    };
-    for (const Study& study : studies()) {
-      for (const auto figures : study.figures) add(figures());
+  auto joined = of_runs;
+  const auto add = [&](const std::vector<SummaryKey>& part) {
+    for (const SummaryKey& key : part) {
+      const bool there = std::any_of(joined.begin(), joined.end(), [&](const SummaryKey& other) {
+        return other.pattern == key.pattern;
+      });
+      if (!there) joined.push_back(key);
     }
-    add(model_figures());
-    add(of_all);
-    return joined;
-  }();
-  return all;
+  };
+  for (const Study& study : studies()) {
+    for (const auto figures : study.figures) add(figures());
+  }
+  add(model_figures());
+  add(of_all);
+  return joined;
 }
+
+std::vector<SummaryKey>& known_keys() {
+  static std::vector<SummaryKey> known = declared_keys();
+  return known;
+}
+
+}  // namespace
+
+const std::vector<SummaryKey>& summary_keys() { return known_keys(); }
 
 const SummaryKey* find_summary_key(const std::string& key) {
   for (const auto& entry : summary_keys()) {
@@ -217,7 +221,13 @@ const SummaryKey* find_summary_key(const std::string& key) {
 }
 
 void require_documented(const Summary& summary) {
+  bool renewed = false;
   for (const auto& [key, value] : summary) {
+    // Models that were added to the registry since bring constants of their own.
+    if (!renewed && find_summary_key(key) == nullptr) {
+      known_keys() = declared_keys();
+      renewed = true;
+    }
     if (find_summary_key(key) == nullptr) {
       throw std::logic_error("summary key " + key +
                              " is not declared among the figures of its study");

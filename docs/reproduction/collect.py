@@ -9,8 +9,8 @@ summary becomes KEY.NAME, the mean over the realizations, with KEY.standard_erro
 and KEY.most.NAME, as in the summary of a sweep. The recorded states add ADDED:
 
     q_over_p_at_0.04, pressure_at_0.04 (Pa): axial_q_over_p and p of a compression at a strain of 0.04
-    kinetic_share_late: largest kinetic over elastic energy in the later half of a compression's loading
-    quasistatic_from: the recorded strain from which that ratio stays below QUASISTATIC up to the largest strain
+    quasistatic_from: the recorded strain of a compression from which kinetic over elastic energy stays below
+        QUASISTATIC up to the largest strain
     shear_stiffness.PART: of a NAME that begins with shear_, the slope of |sigma_xz| over the shear,
         divided by the first mean stress; PART names an interval of shears in PARTS
     strain_slope.PART: of the RVEs of radius RVE, the axial strain of a compression (the shear strain of
@@ -43,7 +43,7 @@ RVE, SET = 5, 0.02
 QUASISTATIC = 1e-3  # kinetic over elastic energy (Wellmann figure 5)
 EDGE = 0.001  # m, Wellmann's unit of length
 #: The keys that this script adds to those of a summary.
-ADDED = ("q_over_p_at_0.04", "pressure_at_0.04", "kinetic_share_late", "quasistatic_from", *(f"shear_stiffness.{part}" for part in PARTS),
+ADDED = ("q_over_p_at_0.04", "pressure_at_0.04", "quasistatic_from", *(f"shear_stiffness.{part}" for part in PARTS),
          "strain_slope.early", "strain_slope.late", "lid_height")
 TOLERANCE = 1e-3  # of the strain at which a state is recorded
 
@@ -61,10 +61,10 @@ def compression_figures(states):
     n = len(loading)
     elastic = states["elastic_energy_J"][:n]
     share = numpy.divide(states["kinetic_energy_J"][:n], elastic, out=numpy.full(n, math.inf), where=elastic > 0)
-    out = {"kinetic_share_late": share[loading >= loading[-1] / 2].max()}
-    moving = numpy.flatnonzero(share >= QUASISTATIC)
-    if moving[-1] + 1 < n:
-        out["quasistatic_from"] = loading[moving[-1] + 1]
+    out = {}
+    still = n - int(numpy.argmax((share >= QUASISTATIC)[::-1])) if (share >= QUASISTATIC).any() else 0
+    if still < n:
+        out["quasistatic_from"] = loading[still]
     at = int(numpy.argmin(abs(loading - 0.04)))
     if abs(loading[at] - 0.04) <= TOLERANCE:
         out |= {"q_over_p_at_0.04": states["axial_q_over_p"][at], "pressure_at_0.04": states["p"][at]}

@@ -198,8 +198,10 @@ def of_summary(summary, beginnings):
 
 
 def with_keys(text, added):
-    """A summary, one key a line, with these in it; its other lines as they are."""
+    """A summary, one key a line, with these in it; its other lines as they are. Refuses another form."""
     lines = [line.rstrip(",") for line in text.splitlines()[1:-1]]
+    if len(lines) != len(json.loads(text)):
+        raise ValueError("a summary with other than one key a line")
     lines = [line for line in lines if line.split('"')[1] not in added]
     lines += [f"  {json.dumps(key)}: {json.dumps(value)}" for key, value in added.items()]
     return "{\n" + ",\n".join(lines) + "\n}\n"

@@ -3,14 +3,14 @@
 # Half an hour of processor time. The stored values are of grainfield 0.9.0 (4f4be8ee).
 set -euo pipefail
 program=$(realpath "$1")
-mkdir -p "$2" && cd "$2"
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+mkdir -p "$2" && cd "$2"
 
 run() { # NAME CASE [OPTION ...]
   [ -e "$1/summary.json" ] || "$program" run "$here/../../cases/$2.toml" -o "$1" "${@:3}"
 }
 measure() { "$here/measure.py" "$@"; }
-states() { [ -e "$1.h5" ] || xz -dkc "$here/states/$1.h5.xz" > "$1.h5"; }
+states() { [ -e "$1.h5" ] || { xz -dkc "$here/states/$1.h5.xz" > "$1.h5.part" && mv "$1.h5.part" "$1.h5"; }; }
 set_files() { echo "grains.files=[\"$1.h5\"]"; }
 
 for name in pile-line-source pile-point-source-2000 pile-asymmetric-line pile-rest-300-awake; do states $name; done

@@ -506,7 +506,7 @@ def test_a_compression_is_read_where_a_state_is_recorded():
         "strain": [0, 0.02, 0.0402, 0.06, 0.04], "p": [0, 1, 4, 3, 2], "axial_q_over_p": [0, 1, 1.2, 1, 1],
         "kinetic_energy_J": [1, 1, 5e-4, 4e-4, 9], "elastic_energy_J": [0, 1, 1, 2, 1]}.items()}
     assert collect.compression_figures(states) == {
-        "q_over_p_at_0.04": 1.2, "pressure_at_0.04": 4, "kinetic_share_late": 5e-4, "quasistatic_from": 0.0402}
+        "q_over_p_at_0.04": 1.2, "pressure_at_0.04": 4, "quasistatic_from": 0.0402}
     assert "pressure_at_0.04" not in collect.compression_figures({**states, "strain": states["strain"] * 0.9})
     assert "quasistatic_from" not in collect.compression_figures(
         {**states, "kinetic_energy_J": collect.numpy.array([1, 1, 1, 1, 9])})

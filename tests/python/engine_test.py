@@ -117,6 +117,12 @@ def test_the_floor_feels_the_weight_and_the_load():
     assert total == pytest.approx(weight + 5, rel=1e-3)
     assert engine.packing().loaded_grain == 9
     assert error_of(lambda: engine.apply(12, (0, 1))) == "apply: found grain 12, allowed: 0 to 11"
+    nan = float("nan")
+    assert error_of(lambda: engine.apply(9, (0, nan))) == "force: found nan, allowed: finite numbers, N"
+    assert error_of(lambda: engine.apply(9, (0, 1), ramp=-1)) == "ramp: found -1, allowed: a finite time, s, 0 or more"
+    assert error_of(lambda: engine.set_gravity((nan, 0))) == "gravity: found nan, allowed: finite numbers, m/s2"
+    with pytest.raises(TypeError, match="grain: found 9.7, allowed: the id of a grain, a whole number"):
+        engine.apply(9.7, (0, 1))
 
 
 def test_walls_move():

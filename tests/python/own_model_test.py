@@ -53,6 +53,14 @@ def test_it_is_fitted_as_osl_is(again):
     assert list(half.constants["again"]) == ["eta"]
 
 
+def test_a_model_made_after_a_fit_brings_constants_of_its_own():
+    gf.fit(HEAPS, ["osl"], heights=[0.3], set={"fit.bootstrap": 0})
+    later = gf.Model(lambda points, facts, share: np.full((len(points), 3), -share), parameters={"share": (0.1, 2.0)},
+                     subject="heap", name="later")
+    fit = gf.fit(HEAPS, ["osl", later], heights=[0.3], set={"fit.bootstrap": 0})
+    assert list(fit.constants["later"]) == ["share"]
+
+
 def test_it_is_compared_as_osl_is(again):
     measures = gf.compare(FIELD, {"osl": gf.model("osl", eta=ETA, mu=MU), "mine": again(eta=ETA, mu=MU)}).measures
     assert measures["mine"]["rel_l2"] == pytest.approx(measures["osl"]["rel_l2"], rel=1e-6)

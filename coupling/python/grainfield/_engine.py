@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import numbers
 import signal
 import threading
 from dataclasses import dataclass, field
@@ -13,6 +14,15 @@ import numpy as np
 from . import _core, _given
 from ._commands import _overrides
 from ._data import Contacts, Packing
+
+
+def _finite(name: str, value: Any, unit: str) -> list[float]:
+    """A number or several, each finite."""
+    values = _given.floats(name, value)
+    for one in values:
+        if not np.isfinite(one):
+            raise ValueError(f"{name}: found {one:g}, allowed: finite numbers, {unit}")
+    return values
 
 
 @dataclass(frozen=True)
@@ -232,8 +242,13 @@ class Engine:
     ) -> None:
         """From now on, instead of any earlier one: this force (dim), N, on the grain, and the same on
         each of those beside; it rises smoothly within ramp, s, from start, s (default: now)."""
-        self._core.apply(int(grain), [float(f) for f in force], [int(k) for k in beside],
-                         self.time if start is None else float(start), float(ramp))
+        for name, one in (("grain", grain), *(("beside", one) for one in beside)):
+            if not isinstance(one, numbers.Integral) or isinstance(one, bool):
+                raise TypeError(f"{name}: found {one!r}, allowed: the id of a grain, a whole number")
+        if not 0 <= _given.number("ramp", ramp, "s") < np.inf:
+            raise ValueError(f"ramp: found {ramp}, allowed: a finite time, s, 0 or more")
+        self._core.apply(int(grain), _finite("force", force, "N"), [int(k) for k in beside],
+                         self.time if start is None else _finite("start", start, "s")[0], float(ramp))
 
     def move_wall(
         self,
@@ -261,7 +276,7 @@ class Engine:
 
     def set_gravity(self, gravity: Sequence[float]) -> None:
         """m/s2 (dim); every grain wakes."""
-        self._core.set_gravity([float(g) for g in gravity])
+        self._core.set_gravity(_finite("gravity", gravity, "m/s2"))
 
     def set_damping(self, rate: float) -> None:
         """Background damping: acceleration -= rate * velocity, 1/s."""

@@ -123,7 +123,7 @@ TEST_F(ImportMeanings, ASizeBesideAVector) {
       "0.6666667\n";
   EXPECT_THAT(only(spheres(head + rows)).warnings,
               Contains(HasSubstr("fn is below 0 in 2 of 2 contacts, which pulls: where compression "
-                                 "is negative, change the sign of the column")));
+                                 "is negative, change the sign of this column")));
 }
 
 // Two contacts of one pair, through both sides of a cell that is narrower than four radii.

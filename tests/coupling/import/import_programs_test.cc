@@ -113,6 +113,28 @@ TEST_F(ImportPrograms, LinesWhoseIdsAreOfMeshes) {
   EXPECT_EQ(only(shifted).snapshot.contacts.at(1).j, 2);
 }
 
+// One wrong id or place among right ones is a mistake of its row, and turns no other force.
+TEST_F(ImportPrograms, AFewRowsThatContradictTheirEndsAreRefused) {
+  const auto rows = [&](const char* last) {
+    return import(
+        "csv",
+        {write("g.csv",
+               "id,x,y,z,radius,mass\n1,0,0,0.01,0.01,1\n2,0,0,0.03,0.01,1\n"
+               "3,0,0,0.05,0.01,1\n4,0,0,0.07,0.01,1\n"),
+         write("c.csv", std::string("i,j,x1,y1,z1,x2,y2,z2,fx,fy,fz\n1,2,0,0,0.03,0,0,0.01,0,0,-3\n"
+                                    "2,3,0,0,0.05,0,0,0.03,0,0,-2\n") +
+                            last + ",0,0,-1\n")},
+        [](ImportOptions& o) { o.dim = 3; });
+  };
+  EXPECT_EQ(only(rows("3,4,0,0,0.07,0,0,0.05")).snapshot.contacts.at(2).force.z(), -1);
+  // The ids alone tell a row without ends.
+  EXPECT_EQ(only(rows("3,4,0,0,0.07,,,")).snapshot.contacts.size(), 3U);
+  EXPECT_THAT(
+      rows("2,4,0,0,0.07,0,0,0.05").refused,
+      HasSubstr("c.csv:4: i and j name other grains than the ends of the row join: 2 4 from "
+                "grain 4 to grain 3 (1 of 3 rows do so)"));
+}
+
 // LIGGGHTS' wall/gran/local as a dump: the wall's end of the line is first, the force is the
 // grain's.
 TEST_F(ImportPrograms, AGrainAndAWallBesideALineThatBeginsAtTheWall) {

@@ -44,6 +44,32 @@ TEST_F(ImportXyz, TellsItsColumnsItsCellAndItsIds) {
   EXPECT_EQ(s.cell.edges(1, 1), 0.2);
 }
 
+// A table of contacts without a step is of one of the states, and nobody knows of which.
+TEST_F(ImportXyz, ContactsWithoutAStepBesideSeveralStates) {
+  const std::string contacts = write("p.csv", "i,j,fx,fy,fz\n7,9,-1,0,0\n");
+  EXPECT_THAT(import("csv", {write("m.xyz", state(kHead, kRows) + state(kHead, kRows)), contacts},
+                     [](ImportOptions& o) { o.dim = 3; })
+                  .refused,
+              HasSubstr("p.csv: tells no step, and there are the steps 0, 1"));
+}
+
+// Forces on grains make no table of contacts; a last row without its line end may be cut.
+TEST_F(ImportXyz, ForcesBesidePlacesAndARowThatIsCut) {
+  const std::string head = "Properties=species:S:1:pos:R:3:forces:R:3:id:I:1";
+  const auto sized = [&](const std::string& text) {
+    return import("csv", {write("f.xyz", text)}, [](ImportOptions& o) {
+      o.without_contacts = true;
+      o.dim = 3;
+      o.columns = {"radius=0.01"};
+    });
+  };
+  const std::string whole = state(head, "G 0 0 0 1 2 3 1\nG 0 0 0.02 1 2 3 2\n");
+  EXPECT_EQ(only(sized(whole)).snapshot.grains.size(), 2U);
+  EXPECT_THAT(sized(whole.substr(0, whole.size() - 1)).refused,
+              HasSubstr("truncated: 2 rows are announced, 1 are there (the last one ends without a "
+                        "line end)"));
+}
+
 // OVITO and ASE write no ids of their own accord, velocities as velo, and T T T as nothing.
 TEST_F(ImportXyz, WithoutIdsAndWithoutPeriods) {
   const dem::Snapshot s =
