@@ -55,7 +55,7 @@ TEST_F(ImportXyz, ContactsWithoutAStepBesideSeveralStates) {
 
 // Forces on grains make no table of contacts; a last row without its line end may be cut.
 TEST_F(ImportXyz, ForcesBesidePlacesAndARowThatIsCut) {
-  const std::string head = "Properties=species:S:1:pos:R:3:forces:R:3:id:I:1";
+  const std::string head = "Properties=species:S:1:pos:R:3:forces:R:3:id:I:1:mass:R:1";
   const auto sized = [&](const std::string& text) {
     return import("csv", {write("f.xyz", text)}, [](ImportOptions& o) {
       o.without_contacts = true;
@@ -63,7 +63,7 @@ TEST_F(ImportXyz, ForcesBesidePlacesAndARowThatIsCut) {
       o.columns = {"radius=0.01"};
     });
   };
-  const std::string whole = state(head, "G 0 0 0 1 2 3 1\nG 0 0 0.02 1 2 3 2\n");
+  const std::string whole = state(head, "G 0 0 0 1 2 3 1 1\nG 0 0 0.02 1 2 3 2 1\n");
   EXPECT_EQ(only(sized(whole)).snapshot.grains.size(), 2U);
   EXPECT_THAT(sized(whole.substr(0, whole.size() - 1)).refused,
               HasSubstr("truncated: 2 rows are announced, 1 are there (the last one ends without a "
