@@ -370,8 +370,8 @@ void import_snapshots(const ImportOptions& options,
   }
 }
 
-dem::Snapshot import_arrays(const ImportOptions& options, const ArrayTable& grains,
-                            const ArrayTable& contacts, const ArrayTable& walls) {
+ImportedSnapshot import_arrays(const ImportOptions& options, const ArrayTable& grains,
+                               const ArrayTable& contacts, const ArrayTable& walls) {
   check_options(options);
   const ImportFormat format = csv_format();
   ColumnNames names(format.columns);
@@ -385,9 +385,9 @@ dem::Snapshot import_arrays(const ImportOptions& options, const ArrayTable& grai
   if (of_walls.rows > 0) assembly.add_walls(of_walls);
   assembly.settle();
   if (of_contacts.rows > 0) assembly.add_contacts(of_contacts);
-  dem::Snapshot out = assembly.finish().snapshot;
-  out.attributes["imported_from"] = "arrays";
-  dem::check_snapshot(out, grains.name);
+  ImportedSnapshot out = assembly.finish();
+  out.snapshot.attributes["imported_from"] = "arrays";
+  dem::check_snapshot(out.snapshot, grains.name);
   return out;
 }
 

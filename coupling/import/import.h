@@ -114,8 +114,8 @@ struct ArrayTable {
 /// The same of tables in memory, in SI units under our names: contacts and walls may be without
 /// columns. Of the options only those that read no file count. Throws std::invalid_argument
 /// likewise, and for a column of an unknown name or of another length than the first.
-dem::Snapshot import_arrays(const ImportOptions& options, const ArrayTable& grains,
-                            const ArrayTable& contacts, const ArrayTable& walls);
+ImportedSnapshot import_arrays(const ImportOptions& options, const ArrayTable& grains,
+                               const ArrayTable& contacts, const ArrayTable& walls);
 
 /// What makes the forces fit the places where files differ in a sign or in the order of axes.
 struct AxesChange {

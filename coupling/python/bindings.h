@@ -25,6 +25,7 @@ namespace py = pybind11;
 /// A state in memory. Never changed: arrays on it and averages of it may last as long as they like.
 struct Packing {
   std::shared_ptr<const dem::Snapshot> state;
+  std::vector<std::string> doubts{};  ///< of arrays: what does not show in the state
 };
 struct HeldField {
   std::shared_ptr<const coupling::Field> field;

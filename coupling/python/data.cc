@@ -282,9 +282,11 @@ Packing packing_of(const py::dict& grains, const py::dict& contacts, const py::d
     throw std::invalid_argument(fmt::format("time: found {}, allowed: a finite number", time));
   const Released released(false);
   try {
-    Snapshot state = coupling::import_arrays(o, of_grains, of_contacts, of_walls);
-    state.time = time;
-    return {std::make_shared<const Snapshot>(std::move(state))};
+    coupling::ImportedSnapshot made = coupling::import_arrays(o, of_grains, of_contacts, of_walls);
+    made.snapshot.time = time;
+    Packing out{std::make_shared<const Snapshot>(std::move(made.snapshot)), {}};
+    for (const std::string& text : made.warnings) out.doubts.push_back(in_words_of_python(text));
+    return out;
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(in_words_of_python(e.what()));
   }
@@ -341,6 +343,7 @@ HeldField field_of(const py::array& points, const std::vector<py::tuple>& column
 
 void add_packing(py::module_& module) {
   py::class_<Packing>(module, "Packing")
+      .def_readonly("doubts", &Packing::doubts)
       .def("column", [](const py::object& self, const std::string& table,
                         const std::string& name) { return column(self, table, name); })
       .def("units", units)

@@ -122,3 +122,13 @@ def test_fields_take_any_array(seed):
             gf.Field(points, **given)
     with pytest.raises(ValueError, match="points"):
         gf.Field(points[0], {"a": values})
+
+
+def test_doubts_of_the_import_are_warnings():
+    """Diameters given as radii lie deep in each other; normals of another length are told."""
+    grains = dict(x=[0.0, 0.0199], y=[0.0, 0.0], mass=[1, 1])
+    pair = {"i": [0], "j": [1], "forces": [[-1.0, 0.0]]}
+    with pytest.warns(UserWarning, match="overlap by more than half the smaller radius"):
+        gf.packing(radius=0.02, contacts=pair, **grains)
+    with pytest.warns(UserWarning, match="are not of unit length"):
+        gf.packing(radius=0.01, contacts=pair | {"normals": [[2.0, 0.0]]}, **grains)

@@ -173,7 +173,8 @@ def packing(
     Other keywords are further columns of the grains under the names of docs/import.md (angle, spin,
     material, ...). The checks are those of `grainfield import`: grains:12 in a message is row 12,
     from 0. flip_forces: True turns all forces, "pairs" those between grains, "walls" those with
-    walls. What `.check()` finds is given as Python warnings. Raises ValueError.
+    walls. What `.check()` finds, and what the command `import` warns of, is given as Python
+    warnings. Raises ValueError.
     """
     dim = 2 if z is None else 3
     for name, value in (("y", y), ("z", z), ("radius", radius)):
@@ -223,6 +224,6 @@ def packing(
         },
     )
     made = Packing(core)
-    for line in made.check()["warnings"]:
+    for line in [*core.doubts, *made.check()["warnings"]]:
         warnings.warn(line, stacklevel=2)
     return made
