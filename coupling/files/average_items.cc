@@ -11,9 +11,9 @@
 #include "coupling/averaging/contact_geometry.h"
 #include "coupling/averaging/extent.h"
 #include "coupling/averaging/upright.h"
-#include "coupling/output/added_forces.h"
 #include "coupling/files/placement.h"
 #include "coupling/import/packing_warnings.h"
+#include "coupling/output/added_forces.h"
 #include "dem/snapshot/added_forces_mark.h"
 #include "dem/snapshot/snapshot.h"
 

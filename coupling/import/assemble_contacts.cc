@@ -37,8 +37,8 @@ int printed_digits(TableReader& reader, const ForeignTable& table,
   return most;
 }
 
-// Of YADE's VTKRecorder: absForceT are the sizes of the components of the shear force. Empty where
-// no column is so called.
+// Columns absForceT of YADE's VTKRecorder, the sizes of the components of the shear force. Empty
+// where no column is so called.
 std::string lost_signs(const TableColumns& columns) {
   const std::vector<std::string> names = columns.untaken();
   const auto at = std::find_if(names.begin(), names.end(), [](const std::string& name) {
@@ -52,7 +52,7 @@ std::string lost_signs(const TableColumns& columns) {
       *at);
 }
 
-// What a column says that is no name of a wall: a flag.
+// A text in a column of walls that is no name of one: a flag.
 bool is_flag(std::string_view text) {
   for (const std::string_view word :
        {"0", "1", "True", "False", "true", "false", "TRUE", "FALSE", "yes", "no"})

@@ -20,7 +20,7 @@ using dem::Vec3;
 // Between a force's part and what a column says of its size: what three digits leave.
 constexpr double kSameSize = 1e-2;
 
-// Of a force that lies along its normal: what few digits leave.
+// The tangential share of a force that lies along its normal: what few digits leave.
 constexpr double kAlong = 1e-3;
 
 // Cosine of the angle between the parts of a force, normal and tangential: few digits leave less.
