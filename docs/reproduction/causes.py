@@ -38,6 +38,8 @@ ROWS = (
 def cell(found, digits):
     if found is None:
         return "not run"
+    while digits < 6 and 0 < found.error < 0.5 * 10**-digits:
+        digits += 1
     value = f"{found.value:.{digits}f}"
     return value if math.isnan(found.error) else f"{value} ± {found.error:.{digits}f}"
 
