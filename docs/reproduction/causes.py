@@ -4,7 +4,7 @@
     docs/reproduction/causes.py
 
 Reads results/wellmann-box.json and results/wellmann-box-causes.json (collect.py makes both). A cell is the
-mean over packings with its standard error; an empty one was not planned, "not run" is missing.
+mean over packings with its standard error; an empty one was not planned, "–" has not run.
 """
 import math
 import pathlib
@@ -40,7 +40,7 @@ ROWS = (
 
 def cell(found, digits):
     if found is None:
-        return "not run"
+        return "–"
     while digits < 6 and 0 < found.error < 0.5 * 10**-digits:
         digits += 1
     value = f"{found.value:.{digits}f}"
