@@ -177,7 +177,7 @@ const OwnWords* own_words(const Key& key, const std::string& study) {
   return nullptr;
 }
 
-// What a key means, of one study ("": of all) with what it adds.
+// Meaning of a key, with what one study adds to it ("": all of them).
 std::string meaning_of(const Key& key, const std::string& study) {
   std::string out = key.meaning;
   for (const Study& one : studies()) {

@@ -6,7 +6,7 @@
 namespace grainfield::coupling {
 namespace {
 
-// Of a grid, points[ix + nx * (iy + ny * iz)]; of other fields every point is one.
+// Cells of a grid, between points[ix + nx * (iy + ny * iz)]; a point is a cell in other fields.
 void add_cells(const Field& field, VtuGrid& grid) {
   const auto nx = static_cast<std::size_t>(field.nx), ny = static_cast<std::size_t>(field.ny),
              nz = static_cast<std::size_t>(field.nz);

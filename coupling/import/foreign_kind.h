@@ -1,4 +1,4 @@
-// What a file of text is by its beginning.
+// Kind of a file of text, by its beginning.
 #pragma once
 #include <string>
 #include <string_view>

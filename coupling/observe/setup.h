@@ -1,4 +1,4 @@
-// What is fitted to heaps and to layers: [fit] of a case.
+// Setup of fits to heaps and to layers: [fit] of a case.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -7,7 +7,7 @@
                                                and pictures go to docs/reproduction/results/
 
 The sources' figures are in figures/*.toml; how ours are read and judged is in rows.py. Ends with 0, with 1
-where --check finds another page, with 2 where it cannot. Needs Python 3.11 and nothing else.
+where --check finds another page, with 2 where it cannot. Needs Python 3.11 and scipy.
 """
 from __future__ import annotations
 

@@ -3,9 +3,9 @@
 A row is a number or a word. A number has `range`, the source's value with its reading error, and
 `key`, ours; `effect` is what a ratio's distance from 1 says in the source. A word comes from a number by
 `limits`, or from a rule by name; `agrees` lists the words of ours that agree with the source's. A row that
-has no result says in `gap` why: "not run", or "not measured" where no study has such a figure. A word with `single` has no
-error over realizations, and says nothing. `cause`
-says why a row differs, or what was tried; a row that does not differ does not show it.
+has no result says in `gap` why: "not run", or "not measured" where no study has such a figure. A word
+with `single` has no error over realizations, and decides nothing. `cause` says why a row differs, or what
+was tried; a row that does not differ does not show it.
 """
 from __future__ import annotations
 

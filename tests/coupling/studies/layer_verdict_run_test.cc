@@ -1,4 +1,5 @@
-// Models fitted to layers under a point load, from case file to report; variants; layers from files.
+// Models fitted to layers under a point load, from case file to report; variants; layers from
+// files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -52,9 +53,8 @@ TEST(LayerVerdictRun, FromCaseToReport) {
   const std::string from =
       folder.write("from.toml", tiny_verdict("[variant.uneven.grains]\nfiles = [\"" +
                                              (folder / "out/uneven/snapshots.h5") + "\"]\n"));
-  const Output second =
-      program("run " + from + " -o " + (folder / "from") +
-              " --set sweep.values=[\\\"uneven\\\"] --set 'fit.kernel=[1, 40]'");
+  const Output second = program("run " + from + " -o " + (folder / "from") +
+                                " --set sweep.values=[\\\"uneven\\\"] --set 'fit.kernel=[1, 40]'");
   ASSERT_EQ(second.code, 0) << second.err;
   EXPECT_EQ(read_text(folder / "from/uneven/fits.csv"), read_text(folder / "out/uneven/fits.csv"));
   const std::string verdict = read_text(folder / "from/uneven/verdict.md");
