@@ -6,8 +6,8 @@
 
 #include "continuum/constants.h"
 #include "coupling/judge/words.h"
-#include "coupling/output/tables.h"
 #include "coupling/report/judgement.h"
+#include "coupling/result/tables.h"
 
 namespace grainfield::coupling {
 namespace {

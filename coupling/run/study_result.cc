@@ -7,19 +7,19 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "coupling/base/version.h"
 #include "coupling/case/study.h"
-#include "coupling/export/packing_page.h"
+#include "coupling/export/forms.h"
 #include "coupling/judge/words.h"
-#include "coupling/output/atomic_file.h"
-#include "coupling/output/judgement.h"
-#include "coupling/output/vtu.h"
 #include "coupling/report/judgement.h"
+#include "coupling/result/judgement.h"
 #include "coupling/run/comparison_page.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/statistics/spread.h"
+#include "coupling/store/atomic_file.h"
+#include "coupling/store/vtu.h"
 #include "coupling/structure/force_chains.h"
-#include "coupling/version.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "coupling/case/case.h"
 #include "coupling/compare/compare.h"
-#include "coupling/output/field_io.h"
-#include "coupling/output/tables.h"
 #include "coupling/report/report.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/realization_file.h"
+#include "coupling/store/field_io.h"
 
 namespace grainfield::coupling {
 

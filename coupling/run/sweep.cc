@@ -9,10 +9,10 @@
 #include <set>
 
 #include "coupling/judge/words.h"
-#include "coupling/output/atomic_file.h"
 #include "coupling/run/comparison_page.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/run/sweep_differences.h"
+#include "coupling/store/atomic_file.h"
 
 namespace grainfield::coupling {
 namespace {

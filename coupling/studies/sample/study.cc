@@ -212,14 +212,6 @@ Report page_of(SampleReport report, const StudyResult& result, const Realization
   return sample_report(report);
 }
 
-void add_contraction(const Contraction& found, Summary& summary) {
-  if (found.figures.empty()) return;
-  add_figures(summary, found.figures);
-  summary["rve.contraction_strain"] = found.strain;
-  if (!std::isfinite(found.strain_error)) return;
-  summary["rve.contraction_strain.standard_error"] = found.strain_error;
-}
-
 // rve.csv, rve_hull.vtu, the figures rve.* and their pictures, where the case asks for RVEs.
 void add_rves(const Case& value, const std::vector<std::string>& files, SampleReport& report,
               StudyResult& out) {
@@ -337,8 +329,8 @@ Study sample_study() {
   out.grain_radius = [](const Case& c) { return c.get<dem::SampleSetup>().plan.radius; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::SampleSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::SampleSetup>().rest; };
-  out.figures = {sample_figures, rve_summary_keys, moduli_summary_keys, strength_summary_keys,
-                 block_summary_keys};
+  out.figures = {sample_figures,      rve_summary_keys,      contraction_figures,
+                 moduli_summary_keys, strength_summary_keys, block_summary_keys};
   out.without = {"material.gravity", "material.floor_friction", "compare.models", "output.fields"};
   out.models_optional = true;
   out.dimension = [](const Case& value) { return value.get<dem::SampleSetup>().plan.dim; };

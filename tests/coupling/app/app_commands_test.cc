@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "tests/coupling/program.h"
 

@@ -14,7 +14,7 @@
 #include <random>
 
 #include "coupling/judge/words.h"
-#include "coupling/observe/lines.h"
+#include "coupling/observe/field_observations.h"
 #include "tests/coupling/compare_scene.h"
 
 namespace grainfield::coupling {

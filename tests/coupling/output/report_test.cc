@@ -18,7 +18,7 @@
 #include <thread>
 
 #include "coupling/averaging/average.h"
-#include "coupling/report/gnuplot.h"
+#include "coupling/report/drawing.h"
 #include "coupling/studies/pile/page.h"
 #include "coupling/studies/point_load/page.h"
 #include "tests/coupling/averaging_scene.h"

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "coupling/output/field_io.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/store/field_io.h"
 #include "tests/coupling/program.h"
 #include "tests/coupling/run_scene.h"
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/studies/pair/closed_forms.h"
 #include "dem/laws/restitution.h"

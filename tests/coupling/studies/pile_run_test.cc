@@ -8,7 +8,7 @@
 #include <random>
 #include <sstream>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "dem/snapshot/snapshot.h"
 #include "tests/coupling/program.h"
