@@ -21,7 +21,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <limits>
+#include <vector>
 
+#include "continuum/closed/about_axis.h"
 #include "continuum/closed/half_space.h"
 #include "continuum/closed/models.h"
 #include "continuum/settings.h"
@@ -65,15 +69,17 @@ class Layer : public Model {
   Stresses stress(const Points& points) override {
     Stresses out = Stresses::Constant(points.rows(), dim_ == 2 ? 3 : 6,
                                       std::numeric_limits<double>::quiet_NaN());
+    std::vector<Eigen::Index> inside;
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
       const double up = points(i, dim_ - 1);
-      if (!(up < 0) || !(up >= -h_ * (1 + kOnBase)) || !points.row(i).allFinite()) continue;
-      const double inside = std::max(up, -h_);
-      if (dim_ == 2)
-        out.row(i) = at(points(i, 0), inside).transpose();
-      else
-        out.row(i) = in_space(points(i, 0), points(i, 1), inside).transpose();
+      if (up < 0 && up >= -h_ * (1 + kOnBase) && points.row(i).allFinite()) inside.push_back(i);
     }
+    if (dim_ == 3) {
+      in_space(points, inside, out);
+      return out;
+    }
+    for (const Eigen::Index i : inside)
+      out.row(i) = at(points(i, 0), std::max(points(i, 1), -h_)).transpose();
     return out;
   }
 
@@ -119,25 +125,51 @@ class Layer : public Model {
     }
   }
 
-  Eigen::Matrix<double, 6, 1> in_space(double x, double y, double z) const {
-    const double r = std::hypot(x, y), phase = r / h_;
-    double rr = 0, tt = 0, zz = 0, rz = 0;
-    over_waves(-z / h_, phase, [&](double u, double weight, double g2, double g0, double g1) {
-      const double at = u * phase, j0 = ::j0(at), j1 = ::j1(at);
-      const double beside = at > 1e-4 ? j1 / at : 0.5 - at * at / 16, ahead = j0 - beside;
-      const double crest = nu_ * (g2 - g0), k = weight * u;
-      rr += k * (g2 * ahead + crest * beside);
-      tt += k * (g2 * beside + crest * ahead);
-      zz -= k * g0 * j0;
-      rz -= k * g1 * j1;  // changes sign with the axis that points up
-    });
-    const double scale = load_ / (2 * M_PI * h_ * h_);
-    const double c = r > 0 ? x / r : 1, s = r > 0 ? y / r : 0;
-    Eigen::Matrix<double, 6, 1> out;
-    out << rr * c * c + tt * s * s, rr * s * s + tt * c * c, zz, rz * s, rz * c, (rr - tt) * c * s;
-    const auto half_space = boussinesq_stress(load_, nu_, x, y, z);
-    for (int k = 0; k < 6; ++k) out(k) = scale * out(k) + half_space[static_cast<std::size_t>(k)];
-    return out;
+  void in_space(const Points& points, const std::vector<Eigen::Index>& inside,
+                Stresses& out) const {
+    const auto n = static_cast<Eigen::Index>(inside.size());
+    Eigen::ArrayXd radius(n), depth(n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const auto p = points.row(inside[static_cast<std::size_t>(k)]);
+      radius[k] = std::hypot(p[0], p[1]) / h_;
+      depth[k] = std::min(-p[2] / h_, 1.0);
+    }
+    const auto field = [this](const Eigen::ArrayXd& r, const Eigen::ArrayXd& d) {
+      return of_base(r, d);
+    };
+    // As far as the load's mirror image is from the base.
+    const Eigen::ArrayX4d base = about_axis(field, 1, radius, depth);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const auto i = inside[static_cast<std::size_t>(k)];
+      const double x = points(i, 0), y = points(i, 1), r = radius[k] * h_;
+      const double c = r > 0 ? x / r : 1, s = r > 0 ? y / r : 0;
+      const double rr = base(k, 0), tt = base(k, 1), zz = base(k, 2), rz = base(k, 3);
+      const double added[6] = {rr * c * c + tt * s * s, rr * s * s + tt * c * c, zz, rz * s, rz * c,
+                               (rr - tt) * c * s};
+      const auto half_space = boussinesq_stress(load_, nu_, x, y, -depth[k] * h_);
+      for (int a = 0; a < 6; ++a) out(i, a) = half_space[static_cast<std::size_t>(a)] + added[a];
+    }
+  }
+
+  /// What the base adds at these radii and depths over h: rr, tt, zz, rz (z up), Pa.
+  Eigen::ArrayX4d of_base(const Eigen::ArrayXd& radius, const Eigen::ArrayXd& depth) const {
+    Eigen::ArrayX4d out = Eigen::ArrayX4d::Zero(radius.size(), 4);
+    for (Eigen::Index k = 0; k < radius.size(); ++k) {
+      double rr = 0, tt = 0, zz = 0, rz = 0;
+      over_waves(depth[k], radius[k],
+                 [&](double u, double weight, double g2, double g0, double g1) {
+                   const double at = u * radius[k], j0 = ::j0(at), j1 = ::j1(at);
+                   const double beside = at > 1e-4 ? j1 / at : 0.5 - at * at / 16;
+                   const double ahead = j0 - beside;
+                   const double crest = nu_ * (g2 - g0), wave = weight * u;
+                   rr += wave * (g2 * ahead + crest * beside);
+                   tt += wave * (g2 * beside + crest * ahead);
+                   zz -= wave * g0 * j0;
+                   rz -= wave * g1 * j1;  // changes sign with the axis that points up
+                 });
+      out.row(k) << rr, tt, zz, rz;
+    }
+    return out * (load_ / (2 * M_PI * h_ * h_));
   }
 
   Eigen::Vector3d at(double x, double y) const {

@@ -16,6 +16,7 @@
 #include <numbers>
 #include <vector>
 
+#include "continuum/closed/about_axis.h"
 #include "continuum/closed/models.h"
 #include "continuum/closed/orthotropic_layer.h"
 #include "continuum/closed/transverse.h"
@@ -31,6 +32,8 @@ using Gauss = boost::math::quadrature::gauss<double, 30>;
 constexpr double kOnBase = 1e-9;
 constexpr double kDecay = 34, kPanelPhase = 6, kPanelWidth = 2;
 constexpr double kLeastRatio = -0.99;
+// Of the decay: up to here the singularity stays a depth away from all depths of the layer.
+constexpr double kMostOscillation = 0.5;
 
 class TransverseLayer : public Model {
  public:
@@ -57,7 +60,14 @@ class TransverseLayer : public Model {
       radius[k] = std::hypot(p[0], p[1]) / h_;
       share[k] = std::min(-p[2] / h_, 1.0);
     }
-    const Eigen::ArrayX4d base = of_base(radius, share);
+    const auto field = [this](const Eigen::ArrayXd& r, const Eigen::ArrayXd& d) {
+      return of_base(r, d);
+    };
+    // Waves that oscillate bring the singularity near the depths of the layer.
+    const bool smooth = waves_.oscillation() <= kMostOscillation * waves_.decay();
+    const Eigen::ArrayX4d base =
+        smooth ? about_axis(field, std::min(1.0, waves_.decay()), radius, share)
+               : of_base(radius, share);
     for (Eigen::Index k = 0; k < n; ++k) {
       const auto i = inside[static_cast<std::size_t>(k)];
       const double x = points(i, 0), y = points(i, 1), r = radius[k] * h_;

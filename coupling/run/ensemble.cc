@@ -43,8 +43,10 @@ double thread_seconds() {
 
 std::string cpu_file(const std::string& file) { return file + ".cpu"; }
 
-// A slice is long enough to cost nothing and short enough to stop at once.
-constexpr double kSliceSeconds = 0.05;
+// A slice is short enough to stop soon. Its last step keeps the forces of all contacts, and its
+// progress is measured: in a layer of 30,000 spheres, where a step takes 5 ms, both together took
+// over a quarter of the time of slices of 0.05 s.
+constexpr double kSliceSeconds = 0.5;
 // How far a realization is at most until its file is written: only then it counts as done.
 constexpr double kAlmost = 0.999;
 constexpr auto kReportEvery = std::chrono::milliseconds(200);

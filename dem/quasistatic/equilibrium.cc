@@ -62,13 +62,22 @@ std::vector<int> others(int all, const std::vector<int>& some) {
   return out;
 }
 
+/// Its equations are solved by iteration.
+bool is_large(const ContactNetwork& network) {
+  return network.per_force() == 3 && network.size() > kMostForFactors;
+}
+
 }  // namespace
+
+std::unique_ptr<LinearSolver> solver_of(const ContactNetwork& network) {
+  return is_large(network) ? make_iterative_solver() : make_direct_solver();
+}
 
 Equilibrium::Equilibrium(ContactNetwork& network, const QuasistaticSettings& settings,
                          std::function<void()> go_on)
     : network_(network), settings_(settings), go_on_(std::move(go_on)) {
-  large_ = network_.per_force() == 3 && network_.size() > kMostForFactors;
-  solver_ = large_ ? make_iterative_solver() : make_direct_solver();
+  large_ = is_large(network_);
+  solver_ = solver_of(network_);
   if (large_) about_loose_ = Loose::apart;
   problem_.residual = [this](const Eigen::VectorXd& z, Eigen::VectorXd& r) {
     if (!network_.residual(z, r)) return false;

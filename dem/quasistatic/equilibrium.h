@@ -21,6 +21,9 @@
 
 namespace grainfield::dem {
 
+/// By factors, or of a large packing in space by iteration.
+std::unique_ptr<LinearSolver> solver_of(const ContactNetwork& network);
+
 class Equilibrium {
  public:
   /// Network and settings must outlive it. `go_on` is asked before every Newton solve and throws to

@@ -98,6 +98,8 @@ bool LayerProber::settle(const std::function<bool(double)>& go_on) {
   how.go_on = go_on;
   try {
     held_ = relax(held_, settings_, held_.gravity, {}, how).state;
+    how.go_on = nullptr;
+    strains_ = std::make_unique<Strains>(held_, settings_, how);
   } catch (const RelaxationStopped&) {
     return false;
   } catch (const std::exception& failure) {
@@ -119,15 +121,12 @@ const Eigen::Matrix3d& LayerProber::stress_before() const {
 }
 
 std::optional<ProbeOutcome> LayerProber::probe(int number,
-                                               const std::function<bool(double)>& go_on) const {
+                                               const std::function<bool(double)>& go_on) {
   stress_before();
   const Eigen::Matrix3d imposed =
       imposed_gradient(direction(number), number % 2 == 0 ? strain_ : -strain_);
-  QuasistaticSettings how;
-  how.unbalanced_force_ratio = kProbeBalance;
-  how.go_on = go_on;
   try {
-    const Snapshot state = dem::strain(held_, settings_, imposed, how).state;
+    const Snapshot state = strains_->strain(imposed, go_on).state;
     ProbeOutcome out;
     out.gradient = gradient_of(state, imposed);
     out.stress = stress_of(state, out.gradient);

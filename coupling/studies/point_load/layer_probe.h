@@ -11,11 +11,13 @@
 #pragma once
 #include <exception>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "dem/engine/engine.h"
+#include "dem/quasistatic/strains.h"
 #include "dem/run/probe_record.h"
 
 namespace grainfield::dem {
@@ -43,7 +45,7 @@ class LayerProber {
   /// The direction of the probe with this number.
   static std::string direction(int number);
   /// That probe's outcome; none when go_on said no. Throws as settle and stress_before.
-  std::optional<ProbeOutcome> probe(int number, const std::function<bool(double)>& go_on) const;
+  std::optional<ProbeOutcome> probe(int number, const std::function<bool(double)>& go_on);
 
  private:
   /// Of the contacts of a strained state; the slab is the same material as before.
@@ -56,6 +58,7 @@ class LayerProber {
   const EngineSettings& settings_;
   double strain_, low_, high_, area_;
   Snapshot held_;                          // with the held grains fixed
+  std::unique_ptr<Strains> strains_;       // of it, once it has settled
   std::optional<Eigen::Matrix3d> before_;  // none: not yet settled
 };
 

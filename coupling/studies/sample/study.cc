@@ -187,7 +187,7 @@ std::string series_of(const StateTable& table, const char* kind) {
   std::string out =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   for (Eigen::Index k = 0; k < table.states(); ++k) {
-    out += fmt::format("<DataSet timestep=\"{:.9g}\" file=\"{}_state_{:03}.vtu\"/>\n",
+    out += fmt::format("<DataSet timestep=\"{:.9g}\" file=\"states/{}_state_{:03}.vtu\"/>\n",
                        table.of("strain")(k, 0), kind, k);
   }
   return out + "</Collection>\n</VTKFile>\n";

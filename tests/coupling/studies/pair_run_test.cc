@@ -87,7 +87,7 @@ TEST(PairRun, LinearImpactIsTheClosedForm) {
                             "Normal restitution against speed", "closed form"}) {
     EXPECT_THAT(report, HasSubstr(title));
   }
-  for (const char* name : {"snapshots.h5", "case.toml", "grains_state_00.vtu"}) {
+  for (const char* name : {"snapshots.h5", "case.toml", "states/grains_state_00.vtu"}) {
     EXPECT_TRUE(testing::fs::exists(folder / ("out/" + std::string(name)))) << name;
   }
 }
