@@ -7,13 +7,13 @@
 
 #include "coupling/app/commands.h"
 #include "coupling/app/terminal.h"
+#include "coupling/base/printable.h"
 #include "coupling/case/case.h"
 #include "coupling/case/cost.h"
 #include "coupling/case/keys.h"
 #include "coupling/case/shipped_cases.h"
 #include "coupling/case/study.h"
 #include "coupling/run/summary_keys.h"
-#include "coupling/system/printable.h"
 
 namespace grainfield::coupling {
 

@@ -8,21 +8,20 @@
 #include <vector>
 
 #include "coupling/app/commands.h"
-#include "coupling/app/points_options.h"
+#include "coupling/app/options.h"
 #include "coupling/app/progress_line.h"
-#include "coupling/app/quantity_option.h"
 #include "coupling/app/terminal.h"
-#include "coupling/app/threads_option.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/averaging/upright.h"
-#include "coupling/files/average_files.h"
-#include "coupling/files/compare_field.h"
-#include "coupling/files/places.h"
-#include "coupling/output/field_file.h"
-#include "coupling/output/judgement.h"
-#include "coupling/output/other_file.h"
+#include "coupling/base/printable.h"
+#include "coupling/result/field_file.h"
+#include "coupling/result/judgement.h"
+#include "coupling/store/field_io.h"
+#include "coupling/store/output_folder.h"
 #include "coupling/structure/mean_stress.h"
-#include "coupling/system/printable.h"
+#include "coupling/tasks/average_task.h"
+#include "coupling/tasks/compare_task.h"
+#include "coupling/tasks/placement.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -158,7 +157,7 @@ void add_average(CLI::App& app, Action& action) {
       if (given->output.empty()) return 0;
       Gaps gaps;
       std::vector<std::string> warnings;
-      const NamedFields fields = average_files(request, &gaps, &warnings);
+      const NamedFields fields = run_average(request, &gaps, &warnings);
       for (const std::string& warning : warnings) note("warning: {}", warning);
       const std::string left_out = write_field_file(given->output, fields);
       if (!left_out.empty()) note("{}", left_out);
@@ -209,7 +208,7 @@ void add_compare(CLI::App& app, Action& action) {
       }
       const CompareOutcome outcome = [&] {
         const SolverProgress progress;
-        return compare_field(*request);
+        return run_compare(*request);
       }();
       if (!outcome.gone.empty()) note("{}", outcome.gone);
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);

@@ -6,12 +6,12 @@
 #include <memory>
 
 #include "coupling/app/commands.h"
+#include "coupling/app/options.h"
 #include "coupling/app/progress_line.h"
 #include "coupling/app/terminal.h"
-#include "coupling/app/threads_option.h"
-#include "coupling/files/fit_files.h"
-#include "coupling/output/judgement.h"
-#include "coupling/system/printable.h"
+#include "coupling/base/printable.h"
+#include "coupling/result/judgement.h"
+#include "coupling/tasks/fit_task.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -66,7 +66,7 @@ void add_fit(CLI::App& app, Action& action) {
       }
       const FitOutcome outcome = [&] {
         const SolverProgress progress;
-        return fit_files(wanted);
+        return run_fit(wanted);
       }();
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);
       if (!outcome.gone.empty()) note("{}", outcome.gone);

@@ -9,19 +9,19 @@
 #include <optional>
 #include <set>
 
-#include "coupling/app/cell_text.h"
 #include "coupling/app/commands.h"
+#include "coupling/app/options.h"
 #include "coupling/app/progress_line.h"
-#include "coupling/app/quantity_option.h"
 #include "coupling/app/terminal.h"
+#include "coupling/base/file_lock.h"
 #include "coupling/import/format.h"
 #include "coupling/import/import.h"
 #include "coupling/import/packing_warnings.h"
 #include "coupling/import/repeated_warnings.h"
-#include "coupling/output/atomic_file.h"
-#include "coupling/output/field_file.h"
-#include "coupling/output/other_file.h"
-#include "coupling/system/file_lock.h"
+#include "coupling/result/field_file.h"
+#include "coupling/store/atomic_file.h"
+#include "coupling/store/field_io.h"
+#include "coupling/store/output_folder.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {

@@ -6,12 +6,13 @@
 #include <memory>
 
 #include "coupling/app/commands.h"
-#include "coupling/app/quantity_option.h"
+#include "coupling/app/options.h"
 #include "coupling/app/terminal.h"
-#include "coupling/files/measured_field.h"
-#include "coupling/files/measured_share.h"
-#include "coupling/output/field_file.h"
-#include "coupling/output/other_file.h"
+#include "coupling/result/field_file.h"
+#include "coupling/store/field_io.h"
+#include "coupling/store/output_folder.h"
+#include "coupling/tasks/measured_field.h"
+#include "coupling/tasks/measured_share.h"
 
 namespace grainfield::coupling {
 

@@ -5,10 +5,9 @@
 #include <memory>
 #include <set>
 
-#include "coupling/app/cell_text.h"
 #include "coupling/app/commands.h"
 #include "coupling/app/terminal.h"
-#include "coupling/output/field_io.h"
+#include "coupling/store/field_io.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -36,6 +35,14 @@ void show_snapshot(const std::string& file, const std::string& group) {
   }
   for (const auto& [name, value] : s.attributes) {
     if (name.compare(0, 7, "figure:") != 0) say("  {}: {}\n", name, value);
+  }
+  for (const auto& [name, table] : s.tables) {
+    std::vector<std::string> columns;
+    for (const dem::NumberColumn& c : table) {
+      columns.push_back(c.unit.empty() || c.unit == "1" ? c.name : c.name + " (" + c.unit + ")");
+    }
+    say("  table {}, {} rows: {}\n", name, table.empty() ? 0 : table.front().values.size(),
+        fmt::join(columns, ", "));
   }
 }
 

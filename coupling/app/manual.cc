@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "coupling/version.h"
+#include "coupling/base/version.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -1,4 +1,5 @@
-// Pages of the manual and shell completion, written from the commands' own declarations.
+// Pages of the manual and of docs/, and shell completion, written from the commands' own
+// declarations.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
@@ -25,5 +26,11 @@ std::string manual_of_command(const CLI::App& command);
 /// A file for bash: completes commands, their options, the values that an option's help lists,
 /// names of shipped cases, of models and of studies, and else names of files.
 std::string bash_completion(const CLI::App& app);
+
+/// docs/commands.md: every command that --help lists, with its arguments and options.
+std::string commands_markdown(const CLI::App& app);
+
+/// docs/columns.md: the columns of snapshots, and those that import reads.
+std::string columns_markdown();
 
 }  // namespace grainfield::coupling

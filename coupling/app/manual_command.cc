@@ -5,8 +5,7 @@
 
 #include "coupling/app/commands.h"
 #include "coupling/app/manual.h"
-#include "coupling/app/reference_pages.h"
-#include "coupling/output/atomic_file.h"
+#include "coupling/store/atomic_file.h"
 
 namespace grainfield::coupling {
 

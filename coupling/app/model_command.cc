@@ -16,9 +16,10 @@
 #include "coupling/app/terminal.h"
 #include "coupling/models/fit_names.h"
 #include "coupling/models/parse_choices.h"
-#include "coupling/output/atomic_file.h"
-#include "coupling/output/field_file.h"
-#include "coupling/output/other_file.h"
+#include "coupling/result/field_file.h"
+#include "coupling/store/atomic_file.h"
+#include "coupling/store/field_io.h"
+#include "coupling/store/output_folder.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -21,9 +21,10 @@
 #include <libfccp/csv.h>
 #pragma GCC diagnostic pop
 
+#include "coupling/base/printable.h"
+#include "coupling/base/read_input.h"
 #include "coupling/import/format.h"
-#include "coupling/system/printable.h"
-#include "coupling/system/read_input.h"
+#include "coupling/result/csv.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
@@ -133,30 +134,29 @@ Eigen::MatrixXd read_rings_csv(const std::string& file) { return read<2>(file, {
 
 std::string stresses_csv(const Eigen::MatrixXd& points, const Eigen::MatrixXd& stresses,
                          const std::vector<continuum::Quantity>& quantities, bool cylindrical) {
-  std::string out = points.cols() == 2 ? "x,y,sigma_xx,sigma_yy,sigma_xy"
-                    : cylindrical ? "x,y,z,sigma_rr,sigma_tt,sigma_zz,sigma_tz,sigma_rz,sigma_rt"
-                                  : "x,y,z,sigma_xx,sigma_yy,sigma_zz,sigma_yz,sigma_xz,sigma_xy";
-  const std::string components = out + ',';
+  std::vector<std::string> names =
+      points.cols() == 2 ? std::vector<std::string>{"x", "y", "sigma_xx", "sigma_yy", "sigma_xy"}
+      : cylindrical
+          ? std::vector<std::string>{"x",        "y",        "z",        "sigma_rr", "sigma_tt",
+                                     "sigma_zz", "sigma_tz", "sigma_rz", "sigma_rt"}
+          : std::vector<std::string>{"x",        "y",        "z",        "sigma_xx", "sigma_yy",
+                                     "sigma_zz", "sigma_yz", "sigma_xz", "sigma_xy"};
   std::vector<const continuum::Quantity*> beside;
   for (const auto& quantity : quantities) {
-    if (components.find(',' + quantity.name + ',') != std::string::npos) continue;
-    beside.push_back(&quantity);
-    out += ',';
-    out += quantity.name;
-  }
-  out += '\n';
-  const auto add = [&out](double value) {
-    out += std::isnan(value) ? ",nan" : fmt::format(",{}", value);
-  };
-  for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    for (Eigen::Index c = 0; c < points.cols(); ++c) {
-      out += fmt::format("{}{}", c > 0 ? "," : "", points(i, c));
+    if (std::find(names.begin(), names.end(), quantity.name) == names.end()) {
+      beside.push_back(&quantity);
     }
-    for (Eigen::Index c = 0; c < stresses.cols(); ++c) add(stresses(i, c));
-    for (const auto* quantity : beside) add(quantity->values[i]);
-    out += '\n';
   }
-  return out;
+  for (const auto* quantity : beside) names.push_back(quantity->name);
+  Csv out(Csv::kAllDigits);
+  out.row(names);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    for (Eigen::Index c = 0; c < points.cols(); ++c) out.add(points(i, c));
+    for (Eigen::Index c = 0; c < stresses.cols(); ++c) out.add(stresses(i, c));
+    for (const auto* quantity : beside) out.add(quantity->values[i]);
+    out.end_row();
+  }
+  return out.text();
 }
 
 }  // namespace grainfield::coupling

@@ -6,15 +6,15 @@
 #include <memory>
 
 #include "coupling/app/commands.h"
+#include "coupling/app/options.h"
 #include "coupling/app/progress_line.h"
 #include "coupling/app/terminal.h"
-#include "coupling/app/threads_option.h"
-#include "coupling/files/compare_field.h"
-#include "coupling/files/fit_files.h"
+#include "coupling/base/printable.h"
 #include "coupling/judge/words.h"
-#include "coupling/output/field_io.h"
-#include "coupling/output/text_table.h"
-#include "coupling/system/printable.h"
+#include "coupling/result/text_table.h"
+#include "coupling/store/field_io.h"
+#include "coupling/tasks/compare_task.h"
+#include "coupling/tasks/fit_task.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -41,7 +41,7 @@ Judgement judgement_of(const PowerRequest& given) {
     request.lines.components = given.components;
     request.lines.heights = given.heights;
     request.folder = given.folder;
-    return compare_field(request).comparison.judgement;
+    return run_compare(request).comparison.judgement;
   }
   FitRequest request;
   request.inputs = given.inputs;
@@ -50,7 +50,7 @@ Judgement judgement_of(const PowerRequest& given) {
   request.components = given.components;
   request.folder = given.folder;
   request.threads = given.threads;
-  return fit_files(request).comparison.judgement;
+  return run_fit(request).comparison.judgement;
 }
 
 }  // namespace

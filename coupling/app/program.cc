@@ -15,9 +15,9 @@
 #include "coupling/app/list_words.h"
 #include "coupling/app/manual.h"
 #include "coupling/app/terminal.h"
-#include "coupling/system/failure.h"
-#include "coupling/system/signals.h"
-#include "coupling/version.h"
+#include "coupling/base/failure.h"
+#include "coupling/base/signals.h"
+#include "coupling/base/version.h"
 
 namespace grainfield::coupling {
 namespace {

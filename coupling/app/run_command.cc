@@ -8,15 +8,14 @@
 #include <vector>
 
 #include "coupling/app/commands.h"
+#include "coupling/app/options.h"
 #include "coupling/app/progress_line.h"
-#include "coupling/app/progress_text.h"
 #include "coupling/app/terminal.h"
-#include "coupling/app/threads_option.h"
+#include "coupling/base/printable.h"
 #include "coupling/case/case.h"
-#include "coupling/output/atomic_file.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/run_request.h"
-#include "coupling/system/printable.h"
+#include "coupling/store/atomic_file.h"
 
 namespace grainfield::coupling {
 namespace {

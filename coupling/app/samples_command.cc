@@ -6,10 +6,10 @@
 
 #include "coupling/app/commands.h"
 #include "coupling/app/terminal.h"
+#include "coupling/base/printable.h"
 #include "coupling/case/shipped_cases.h"
-#include "coupling/output/atomic_file.h"
-#include "coupling/output/output_folder.h"
-#include "coupling/system/printable.h"
+#include "coupling/store/atomic_file.h"
+#include "coupling/store/output_folder.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

@@ -6,13 +6,12 @@
 #include <stdexcept>
 
 #include "coupling/app/commands.h"
-#include "coupling/app/points_options.h"
-#include "coupling/app/quantity_option.h"
+#include "coupling/app/options.h"
 #include "coupling/app/terminal.h"
-#include "coupling/app/threads_option.h"
-#include "coupling/files/strain_files.h"
-#include "coupling/output/field_file.h"
-#include "coupling/output/other_file.h"
+#include "coupling/result/field_file.h"
+#include "coupling/store/field_io.h"
+#include "coupling/store/output_folder.h"
+#include "coupling/tasks/strain_task.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -68,7 +67,7 @@ void add_strain(CLI::App& app, Action& action) {
       request.nx = given->where.columns;
       request.ny = given->where.rows;
       request.nz = given->where.layers;
-      const StrainOutcome outcome = strain_files(request);
+      const StrainOutcome outcome = run_strain(request);
       write_field_file(given->output, {{"strain", outcome.field}});
       say("strain: {} points, measure {}, width {} m\n", outcome.field.points.rows(),
           request.options.measure, outcome.field.number("width"));

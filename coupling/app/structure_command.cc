@@ -7,47 +7,49 @@
 #include "coupling/app/commands.h"
 #include "coupling/app/terminal.h"
 #include "coupling/averaging/contact_geometry.h"
-#include "coupling/files/average_files.h"
-#include "coupling/output/atomic_file.h"
-#include "coupling/output/output_folder.h"
+#include "coupling/base/printable.h"
+#include "coupling/result/csv.h"
+#include "coupling/store/atomic_file.h"
+#include "coupling/store/output_folder.h"
 #include "coupling/structure/mean_stress.h"
 #include "coupling/structure/packing_structure.h"
-#include "coupling/system/printable.h"
+#include "coupling/tasks/average_task.h"
 
 namespace grainfield::coupling {
 namespace {
 
 // One row per grain.
 std::string grains_csv(const dem::Snapshot& s, const PackingStructure& made) {
-  std::string out =
-      "# angles in degrees from x; loads tension positive, N/m (3D: N/m2)\n"
-      "id,x,y,z,fixed,contacts,rattler,stress_trace,stress_deviator,compression_angle,fabric_angle,"
-      "long_angle,chain\n";
+  Csv out(Csv::kAllDigits);
+  out.comment("angles in degrees from x; loads tension positive, N/m (3D: N/m2)");
+  out.row("id", "x", "y", "z", "fixed", "contacts", "rattler", "stress_trace", "stress_deviator",
+          "compression_angle", "fabric_angle", "long_angle", "chain");
   for (std::size_t k = 0; k < s.grains.size(); ++k) {
     const dem::Grain& grain = s.grains[k];
     const GrainStructure& g = made.grains[k];
-    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", grain.id, grain.position.x(),
-                       grain.position.y(), grain.position.z(), grain.fixed ? 1 : 0, g.contacts,
-                       g.rattler ? 1 : 0, g.stress_trace, g.stress_deviator, g.compression_angle,
-                       g.fabric_angle, g.long_angle, g.chain);
+    out.row(grain.id, grain.position, grain.fixed, g.contacts, g.rattler, g.stress_trace,
+            g.stress_deviator, g.compression_angle, g.fabric_angle, g.long_angle, g.chain);
   }
-  return out;
+  return out.text();
 }
 
 std::string base_csv(const BaseForces& base) {
-  std::string out = fmt::format("# mean vertical force {} N\nid,x,force,normalised\n", base.mean);
-  for (Eigen::Index k = 0; k < base.x.size(); ++k)
-    out += fmt::format("{},{},{},{}\n", base.ids[static_cast<std::size_t>(k)], base.x[k],
-                       base.force[k], base.normalised[k]);
-  return out;
+  Csv out(Csv::kAllDigits);
+  out.comment(fmt::format("mean vertical force {} N", base.mean));
+  out.row("id", "x", "force", "normalised");
+  for (Eigen::Index k = 0; k < base.x.size(); ++k) {
+    out.row(base.ids[static_cast<std::size_t>(k)], base.x[k], base.force[k], base.normalised[k]);
+  }
+  return out.text();
 }
 
 std::string counts_csv(const CoordinationCounts& counts) {
-  std::string out = "contacts,grains,bearing_grains\n";
-  for (std::size_t k = 0; k < counts.with.size(); ++k)
-    out += fmt::format("{},{},{}\n", k, counts.with[k],
-                       k < counts.with_bearing.size() ? counts.with_bearing[k] : 0);
-  return out;
+  Csv out;
+  out.row("contacts", "grains", "bearing_grains");
+  for (std::size_t k = 0; k < counts.with.size(); ++k) {
+    out.row(k, counts.with[k], k < counts.with_bearing.size() ? counts.with_bearing[k] : 0);
+  }
+  return out.text();
 }
 
 void show(const std::string& title, const dem::Snapshot& s, const std::string& folder) {

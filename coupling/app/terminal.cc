@@ -1,6 +1,7 @@
 #include "coupling/app/terminal.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,8 +10,8 @@
 #include <cstring>
 #include <utility>
 
-#include "coupling/output/output_folder.h"
-#include "coupling/system/printable.h"
+#include "coupling/base/printable.h"
+#include "coupling/store/output_folder.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -91,7 +92,7 @@ void put(const std::string& text) {
 void put_log(const std::string& line) { put_error(one_line(line, kLongestLine) + "\n"); }
 
 void note_gone(const std::string& folder, const std::vector<std::filesystem::path>& gone) {
-  if (!gone.empty()) note("{}", told_of_gone(folder, gone));
+  if (!gone.empty()) note("{}", gone_note(folder, gone));
 }
 
 void put_progress(const std::string& line) { put_error("\r\033[K" + one_line(line, kLongestLine)); }
@@ -102,6 +103,25 @@ int finish_output() {
   if (failure == EPIPE) return kExitPipe;
   note("standard output cannot be written: {}", std::strerror(failure));
   return kExitStorage;
+}
+
+std::string cell_text(const dem::Cell<3>& cell) {
+  std::string axes, edges;
+  for (int a = 0; a < 3; ++a) {
+    if (!cell.periodic[static_cast<std::size_t>(a)]) continue;
+    const Eigen::Vector3d e = cell.edges.col(a);
+    axes += fmt::format("{}{}", axes.empty() ? "" : ", ", "xyz"[a]);
+    edges += fmt::format("{}({:g}, {:g}, {:g})", edges.empty() ? "" : " and ", e.x(), e.y(), e.z());
+  }
+  std::string text = fmt::format("periodic along {}; edges {} m from ({:g}, {:g}, {:g})", axes,
+                                 edges, cell.low.x(), cell.low.y(), cell.low.z());
+  if (cell.velocity_gradient.isZero(0)) return text;
+  text += "; velocity gradient (1/s)";
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b)
+      if (const double rate = cell.velocity_gradient(a, b); rate != 0)
+        text += fmt::format(" {}{} {:g}", "xyz"[a], "xyz"[b], rate);
+  return text;
 }
 
 }  // namespace grainfield::coupling

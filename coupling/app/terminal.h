@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "coupling/system/failure.h"
+#include "coupling/base/failure.h"
+#include "dem/space/cell.h"
 
 namespace grainfield::coupling {
 
@@ -33,7 +34,7 @@ template <class... Args>
 void note(fmt::format_string<Args...> form, Args&&... args) {
   put_log("grainfield: " + fmt::format(form, std::forward<Args>(args)...));
 }
-/// A note of told_of_gone (coupling/output/output_folder.h), where something is gone.
+/// A note of gone_note (coupling/store/output_folder.h), where something is gone.
 void note_gone(const std::string& folder, const std::vector<std::filesystem::path>& gone);
 /// The same without end of line, over the line that stands there: progress on a terminal.
 void put_progress(const std::string& line);
@@ -42,5 +43,8 @@ void put_progress(const std::string& line);
 /// one line on standard error when it cannot be written: a file is then cut back to the length it
 /// had.
 int finish_output();
+
+/// "periodic along x, y; edges (0.1, 0, 0) and (0, 0.1, 0) m from (0, 0, 0)", and how it flows.
+std::string cell_text(const dem::Cell<3>& cell);
 
 }  // namespace grainfield::coupling

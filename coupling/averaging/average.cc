@@ -11,8 +11,8 @@
 #include "coupling/averaging/kernel.h"
 #include "coupling/averaging/periodic.h"
 #include "coupling/averaging/weights.h"
+#include "coupling/base/unknown_name.h"
 #include "coupling/statistics/parallel.h"
-#include "coupling/unknown_name.h"
 #include "dem/snapshot/same_grain.h"
 
 namespace grainfield::coupling {
@@ -128,19 +128,26 @@ Field difference(const Packing& unloaded, const Packing& loaded, const Eigen::Ma
                  const AverageOptions& options, Gaps* gaps) {
   const Region region(unloaded.snapshot);
   const Field before = average_in(unloaded, region, points, options, gaps);
-  Field change = average_in(loaded, region, points, options, gaps);
-  for (std::size_t c = 0; c < change.columns.size(); ++c) {
-    Eigen::VectorXd& value = change.columns[c].value;
-    if (change.columns[c].name == "grains")
-      value = value.cwiseMin(before.columns[c].value);
-    else
-      value -= before.columns[c].value;
-  }
+  Field change =
+      change_between(before, average_in(loaded, region, points, options, gaps), "grains");
   change.attributes["what"] = "loaded - unloaded";
   return change;
 }
 
 }  // namespace
+
+Field change_between(const Field& before, Field after, const std::string& counted) {
+  after.points = before.points;
+  for (std::size_t c = 0; c < after.columns.size(); ++c) {
+    Eigen::VectorXd& value = after.columns[c].value;
+    const Eigen::VectorXd& former = before.columns[c].value;
+    if (after.columns[c].name == counted)
+      value = value.cwiseMin(former);
+    else
+      value -= former;
+  }
+  return after;
+}
 
 void say_averaging(const AverageOptions& options, Field& field) {
   field.attributes["method"] = options.method;

@@ -1,13 +1,14 @@
 // Grains and contacts to fields on points, by interchangeable weights (docs/averaging.md).
 #pragma once
 #include <Eigen/Core>
+#include <string>
 
 #include "coupling/averaging/balance.h"
 #include "coupling/averaging/gaps.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/averaging/options.h"
 #include "coupling/averaging/points.h"
-#include "coupling/field.h"
+#include "coupling/base/field.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -29,6 +30,10 @@ Field average(const dem::Snapshot& snapshot, const Eigen::MatrixXd& points,
 
 /// How it was averaged, as attributes: method, kernel and width, m.
 void say_averaging(const AverageOptions& options, Field& field);
+
+/// after - before, column by column, at the places before; of the column `counted`, numbers of
+/// grains or contacts, the smaller one.
+Field change_between(const Field& before, Field after, const std::string& counted);
 
 /// average(loaded) - average(unloaded), column by column; `grains` is the smaller count. Throws
 /// std::invalid_argument "snapshots do not belong together: ..." unless both hold the same grains.

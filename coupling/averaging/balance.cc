@@ -198,18 +198,4 @@ std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOpti
   return out;
 }
 
-std::string balance_markdown(const std::vector<BalanceRow>& rows) {
-  std::string text =
-      "| method | weight | width (m) | rms near the floor | rms inside | rms near the surface | "
-      "worst cut | worst cut, sharp |\n|---|---|---|---|---|---|---|---|\n";
-  const auto rms = [](const BalanceResidual& r) {
-    return r.points > 0 ? fmt::format("{:.2g}", r.rms) : std::string("none");
-  };
-  for (const BalanceRow& row : rows)
-    text += fmt::format("| {} | {} | {:.4g} | {} | {} | {} | {:+.2g} % | {:+.2g} % |\n", row.method,
-                        row.kernel, row.width, rms(row.base), rms(row.inside), rms(row.surface),
-                        100 * row.worst_cut, 100 * row.worst_sharp);
-  return text;
-}
-
 }  // namespace grainfield::coupling

@@ -70,7 +70,5 @@ struct BalanceRow {
 /// work that is done.
 std::vector<BalanceRow> balance_table(const dem::Snapshot& snapshot, AverageOptions options,
                                       const std::function<void(double)>& progress = {});
-/// The table as Markdown.
-std::string balance_markdown(const std::vector<BalanceRow>& rows);
 
 }  // namespace grainfield::coupling

@@ -70,11 +70,8 @@ Field base_profile(const dem::Snapshot& snapshot, const Eigen::VectorXd& x, cons
 Field base_response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
                     const Eigen::VectorXd& x, const Kernel& kernel) {
   require_same_grains(unloaded, loaded);
-  const Field before = base_profile(unloaded, x, kernel);
-  Field change = base_profile(loaded, x, kernel);
-  change.points = before.points;
-  for (std::size_t c = 0; c < 2; ++c) change.columns[c].value -= before.columns[c].value;
-  change.columns[2].value = change.columns[2].value.cwiseMin(before.columns[2].value);
+  Field change = change_between(base_profile(unloaded, x, kernel), base_profile(loaded, x, kernel),
+                                "contacts");
   change.attributes["what"] = "stress on the base, loaded - unloaded";
   return change;
 }

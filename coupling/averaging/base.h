@@ -6,7 +6,7 @@
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/kernel.h"
-#include "coupling/field.h"
+#include "coupling/base/field.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

@@ -95,11 +95,8 @@ Field base_stress(const dem::Snapshot& snapshot, const Eigen::MatrixXd& places,
 Field base_stress_response(const dem::Snapshot& unloaded, const dem::Snapshot& loaded,
                            const Eigen::MatrixXd& places, const Kernel& kernel) {
   require_same_grains(unloaded, loaded);
-  const Field before = base_stress(unloaded, places, kernel);
-  Field change = base_stress(loaded, places, kernel);
-  change.points = before.points;
-  for (std::size_t c = 0; c < 3; ++c) change.columns[c].value -= before.columns[c].value;
-  change.columns[3].value = change.columns[3].value.cwiseMin(before.columns[3].value);
+  Field change = change_between(base_stress(unloaded, places, kernel),
+                                base_stress(loaded, places, kernel), "contacts");
   change.attributes["what"] = "stress on the base, loaded - unloaded";
   return change;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "coupling/averaging/kernel.h"
-#include "coupling/field.h"
+#include "coupling/base/field.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/field.h"
+#include "coupling/base/field.h"
 
 namespace grainfield::coupling {
 

@@ -1,7 +1,7 @@
 // A disk (3D: ball) of constant weight: sharp; the line integral is a chord.
 #include <numbers>
 
-#include "coupling/averaging/kernels.h"
+#include "coupling/averaging/kernel.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -9,8 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "coupling/averaging/kernels.h"
-#include "coupling/unknown_name.h"
+#include "coupling/base/unknown_name.h"
 
 namespace grainfield::coupling {
 namespace {

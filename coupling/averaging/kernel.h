@@ -51,4 +51,8 @@ double branch_weight(const Kernel& kernel, const Eigen::Vector3d& point, const E
 std::unique_ptr<Kernel> make_kernel(const std::string& name, double width, int dim = 2);
 const std::vector<std::string>& kernel_names();
 
+std::unique_ptr<Kernel> make_lucy(double width, int dim);
+std::unique_ptr<Kernel> make_gaussian(double width, int dim);
+std::unique_ptr<Kernel> make_heaviside(double width, int dim);
+
 }  // namespace grainfield::coupling

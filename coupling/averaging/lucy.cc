@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "coupling/averaging/kernels.h"
+#include "coupling/averaging/kernel.h"
 
 namespace grainfield::coupling {
 namespace {

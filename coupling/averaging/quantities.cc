@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "continuum/constants.h"
-#include "coupling/unknown_name.h"
+#include "coupling/base/unknown_name.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "coupling/averaging/gaps.h"
 #include "coupling/averaging/options.h"
-#include "coupling/field.h"
+#include "coupling/base/field.h"
 
 namespace grainfield::coupling {
 

@@ -55,10 +55,10 @@ void check_choice(const Key& key, const Assignment& a, const std::string& value,
   const std::vector<std::string>& choices = choices_of(key, study);
   if (choices.empty() || std::find(choices.begin(), choices.end(), value) != choices.end()) return;
   const std::string all = allowed(key, study);
-  if (const auto beyond = beyond_of(key, study)) {
-    const std::optional<std::string> why = beyond(value);
-    if (why && why->empty()) return;
-    if (why) reject(a, key.path(), *why);
+  if (const ModelTextCheck check = model_check_of(key, study)) {
+    const ModelText text = check(value);
+    if (text.is == ModelText::Is::model) return;
+    if (text.is == ModelText::Is::refused) reject(a, key.path(), text.why);
   }
   if (const std::string why = of_three_dimensions(key, value); !why.empty()) {
     reject(a, key.path(), fmt::format("found \"{}\", allowed: {}; {}", value, all, why));

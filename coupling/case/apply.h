@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "coupling/base/mistakes.h"
 #include "coupling/case/case.h"
 #include "coupling/case/document.h"
 #include "coupling/case/keys.h"
-#include "coupling/system/mistakes.h"
 
 namespace grainfield::coupling {
 

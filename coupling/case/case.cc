@@ -9,10 +9,10 @@
 #include <stdexcept>
 
 #include "continuum/settings.h"
+#include "coupling/base/mistakes.h"
 #include "coupling/case/apply.h"
 #include "coupling/case/members.h"
 #include "coupling/case/study.h"
-#include "coupling/system/mistakes.h"
 
 namespace grainfield::coupling {
 namespace {

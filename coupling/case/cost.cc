@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
+#include "coupling/base/memory.h"
 #include "coupling/case/material.h"
 #include "coupling/case/study.h"
-#include "coupling/system/memory.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -14,7 +14,7 @@ inline constexpr std::int64_t kMostDraws = 300'000;
 /// Throws std::invalid_argument "ORIGIN: KEY: ..." for more time steps or grain steps than can be
 /// taken, naming the key to which they are due.
 void check_steps(const Draft& draft, const dem::Outlook& outlook);
-/// The same for more memory than a process may take here (coupling/system/memory.h).
+/// The same for more memory than a process may take here (coupling/base/memory.h).
 void check_memory(const Draft& draft, const dem::Outlook& outlook);
 /// The same for more averaged values than can be kept: points times realizations.
 void check_points(const Draft& draft);

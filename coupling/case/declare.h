@@ -54,10 +54,6 @@ class SectionKeys {
   void or_none() { keys_.back().may_be_empty = true; }
   /// The last key, a list, may hold a value more than once.
   void with_repeats() { keys_.back().may_repeat = true; }
-  /// The last key's words may be others, too (Key::beyond).
-  void or_else(std::optional<std::string> (*beyond)(const std::string&)) {
-    keys_.back().beyond = beyond;
-  }
   /// The last key has an effect only where another one is (or, of a list, holds) one of these. Of
   /// several such needs all hold; those of keys that a study does not have do not concern it.
   void only(const std::string& key, std::vector<std::string> values) {

@@ -1,5 +1,3 @@
-#include "coupling/case/dimensions.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "coupling/case/doubts.h"
 #include "coupling/case/study.h"
 
 namespace grainfield::coupling {

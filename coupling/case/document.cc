@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "coupling/system/read_input.h"
+#include "coupling/base/read_input.h"
 
 namespace grainfield::coupling {
 namespace {

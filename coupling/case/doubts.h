@@ -1,4 +1,5 @@
-// Values that are allowed and hardly meant: grains of metres, falls of thousands of diameters.
+// Keys that do not hold in the dimensions of the case, and values that are allowed and hardly
+// meant: grains of metres, falls of thousands of diameters.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,5 +15,9 @@ struct Doubt {
 /// The size of grains, their density, and the way they fall. Of a finished draft, or of one whose
 /// grains are refused.
 std::vector<Doubt> doubts(const Draft& draft);
+
+/// Throws std::invalid_argument "ORIGIN: KEY: found ..., allowed: ..." for a key or a word, written
+/// or standing by default, that does not hold in the dimensions of the case's grains.
+void check_dimensions(const Draft& draft);
 
 }  // namespace grainfield::coupling

@@ -12,14 +12,13 @@
 #include "continuum/without_effect.h"
 #include "coupling/case/apply.h"
 #include "coupling/case/cost.h"
-#include "coupling/case/dimensions.h"
 #include "coupling/case/doubts.h"
 #include "coupling/case/material.h"
 #include "coupling/case/members.h"
 #include "coupling/case/study.h"
 #include "coupling/case/units.h"
+#include "coupling/models/evaluate_model.h"
 #include "coupling/models/fit_names.h"
-#include "coupling/models/models.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -15,6 +15,7 @@
 #include "coupling/case/common_keys.h"
 #include "coupling/case/declare.h"
 #include "coupling/case/study.h"
+#include "coupling/result/text_table.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -420,10 +421,9 @@ const std::vector<std::string>& choices_of(const Key& key, const std::string& st
   return own != nullptr ? own->choices : key.choices;
 }
 
-std::optional<std::string> (*beyond_of(const Key& key,
-                                       const std::string& study))(const std::string&) {
+ModelTextCheck model_check_of(const Key& key, const std::string& study) {
   const OwnWords* own = own_words(key, study);
-  return own != nullptr ? own->beyond : key.beyond;
+  return own != nullptr ? own->check : nullptr;
 }
 
 std::string allowed(const Key& key, const std::string& study) {
@@ -493,23 +493,29 @@ std::string keys_markdown() {
   const auto cell = [](const std::string& text) {
     return boost::replace_all_copy(text, "|", "\\|");
   };
+  std::vector<std::vector<std::string>> rows;
+  const auto end_section = [&] {
+    if (rows.empty()) return;
+    out += plain_markdown_table({"key", "type", "unit", "default", "allowed", "meaning", "source"},
+                                rows);
+    rows.clear();
+  };
   for (const Key& key : keys()) {
     if (key.section != current) {
+      end_section();
       current = key.section;
       out += fmt::format("\n## {}\n\n", current.empty() ? "Top level" : heading(current));
       if (const auto note = note_of(current); !note.empty()) out += note + "\n\n";
-      out += "| key | type | unit | default | allowed | meaning | source |\n";
-      out += "|---|---|---|---|---|---|---|\n";
     }
     const Defaults defaults = defaults_of(key);
     std::string standard = fmt::format("`{}`", cell(defaults.first));
     for (const auto& [study, text] : defaults.others) {
       standard += fmt::format("; {}: `{}`", study, cell(text));
     }
-    out += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", key.name, type_shown(key),
-                       key.unit, standard, cell(allowed(key)),
-                       cell(limits(key) + meaning_of(key, "")), key.source);
+    rows.push_back({fmt::format("`{}`", key.name), type_shown(key), key.unit, standard,
+                    cell(allowed(key)), cell(limits(key) + meaning_of(key, "")), key.source});
   }
+  end_section();
   return out;
 }
 

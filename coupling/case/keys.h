@@ -38,10 +38,6 @@ struct Key {
   bool may_repeat = false;           ///< lists: a value more than once
   std::vector<Need> needs;           ///< all of them, of the keys that the study has
 
-  /// Of words besides the choices: why one is refused, empty where it is not; nothing for a word
-  /// that is not meant so.
-  std::optional<std::string> (*beyond)(const std::string&) = nullptr;
-
   bool plane_shapes = false;  ///< its words are shapes of grains in the plane
 
   std::string follows;    ///< what the default follows: "2/7 of normal_stiffness"; empty: nothing
@@ -87,9 +83,8 @@ std::string entries_allowed(const Key& key);
 std::string allowed(const Key& key, const std::string& study = "");
 /// The words that a key takes in a study, none where it takes any text.
 const std::vector<std::string>& choices_of(const Key& key, const std::string& study);
-/// Key::beyond, or that of the study's own words; may be null.
-std::optional<std::string> (*beyond_of(const Key& key,
-                                       const std::string& study))(const std::string&);
+/// OwnWords::check of the key in a study; null: it has no words besides its choices.
+ModelTextCheck model_check_of(const Key& key, const std::string& study);
 /// The value of a key in a case, as TOML.
 std::string value_text(const Key& key, const Case& value);
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "coupling/case/case.h"
-#include "coupling/output/figure.h"
+#include "coupling/result/figure.h"
 #include "dem/laws/material_setup.h"
 #include "dem/motion/motion_setup.h"
 #include "dem/run/outlook.h"
@@ -42,9 +42,8 @@ struct OwnNeed {
 struct OwnWords {
   std::string path;
   std::vector<std::string> choices;
-  std::string meaning;  ///< goes on where the key's ends; may be empty
-  /// Of other words: as Key::beyond.
-  std::optional<std::string> (*beyond)(const std::string&) = nullptr;
+  std::string meaning;             ///< goes on where the key's ends; may be empty
+  ModelTextCheck check = nullptr;  ///< of other words: models with settings
 };
 
 /// Where a case names models besides compare.models, which is empty then unless somebody sets it:

@@ -4,8 +4,8 @@
 
 #include <numbers>
 
+#include "coupling/base/unit.h"
 #include "coupling/case/study.h"
-#include "coupling/unit.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {

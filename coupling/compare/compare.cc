@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "continuum/constants.h"
-#include "coupling/compare/verdict.h"
 
 namespace grainfield::coupling {
 namespace {

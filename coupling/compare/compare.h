@@ -131,4 +131,8 @@ DrawnLine drawn_line(const Comparison& comparison, std::size_t model, std::size_
 /// realizations on (not of peak_at and peaks).
 std::map<std::string, double> summary_figures(const Comparison& comparison, std::size_t main);
 
+/// Fills chi2_per_dof, chance and dof of comparison.results, per profile and overall, and
+/// comparison.judgement. Needs profiles, models and the rest of the results.
+void judge_comparison(Comparison& comparison);
+
 }  // namespace grainfield::coupling

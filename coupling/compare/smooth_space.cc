@@ -1,5 +1,3 @@
-#include "coupling/compare/smooth_space.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "coupling/averaging/base_space.h"
 #include "coupling/compare/quadrature.h"
+#include "coupling/compare/smooth.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -1,5 +1,3 @@
-#include "coupling/compare/verdict.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "continuum/constants.h"
+#include "coupling/compare/compare.h"
 #include "coupling/judge/judge.h"
 #include "coupling/statistics/agreement.h"
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "continuum/constants.h"
+#include "coupling/result/csv.h"
 
 namespace grainfield::coupling {
 
@@ -11,18 +12,18 @@ std::string elastic_map_text(const Field& constants) {
   const Eigen::Index nx = constants.nx;
   const double x0 = at(0, 0), y0 = at(0, 1), dx = at(1, 0) - x0, dy = at(nx, 1) - y0;
   const Column &young = *constants.find("young"), &poisson = *constants.find("poisson");
-  std::string text = fmt::format(
-      "# grainfield elastic map, plane strain: x, y in m, young in N/m; {} x {} nodes, x fastest\n"
-      "x,y,young,poisson,young_error,poisson_error\n",
-      constants.nx, constants.ny);
+  Csv out(Csv::kAllDigits);
+  out.comment(fmt::format(
+      "grainfield elastic map, plane strain: x, y in m, young in N/m; {} x {} nodes, x fastest", nx,
+      constants.ny));
+  out.row("x", "y", "young", "poisson", "young_error", "poisson_error");
   for (Eigen::Index k = 0; k < at.rows(); ++k) {
     const bool stable = poisson.value[k] > -1 && poisson.value[k] < 0.5;
     const auto shown = [&](const Eigen::VectorXd& values) { return stable ? values[k] : kNan; };
-    text += fmt::format("{},{},{},{},{},{}\n", x0 + static_cast<double>(k % nx) * dx,
-                        y0 + static_cast<double>(k / nx) * dy, shown(young.value),
-                        shown(poisson.value), shown(young.error), shown(poisson.error));
+    out.row(x0 + static_cast<double>(k % nx) * dx, y0 + static_cast<double>(k / nx) * dy,
+            shown(young.value), shown(poisson.value), shown(young.error), shown(poisson.error));
   }
-  return text;
+  return out.text();
 }
 
 }  // namespace grainfield::coupling

@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-#include "coupling/field.h"
+#include "coupling/base/field.h"
 
 namespace grainfield::coupling {
 

@@ -6,16 +6,12 @@
 #include <stdexcept>
 
 #include "continuum/model.h"
-#include "coupling/export/field_picture.h"
-#include "coupling/export/field_vtu.h"
-#include "coupling/export/packing_page.h"
-#include "coupling/export/packing_tables.h"
-#include "coupling/export/paraview_script.h"
-#include "coupling/output/atomic_file.h"
-#include "coupling/output/field_csv.h"
-#include "coupling/output/vtu.h"
+#include "coupling/export/forms.h"
 #include "coupling/report/drawing.h"
 #include "coupling/report/style.h"
+#include "coupling/result/field_file.h"
+#include "coupling/store/atomic_file.h"
+#include "coupling/store/vtu.h"
 #include "coupling/structure/force_chains.h"
 
 namespace grainfield::coupling {

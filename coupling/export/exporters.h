@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "coupling/field.h"
-#include "coupling/output/output_folder.h"
+#include "coupling/base/field.h"
+#include "coupling/store/output_folder.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

@@ -1,5 +1,3 @@
-#include "coupling/export/field_picture.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,6 +6,8 @@
 #include <map>
 #include <stdexcept>
 #include <vector>
+
+#include "coupling/export/forms.h"
 
 namespace grainfield::coupling {
 namespace {

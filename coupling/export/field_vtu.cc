@@ -1,7 +1,6 @@
-#include "coupling/export/field_vtu.h"
-
-#include "coupling/output/added_forces.h"
-#include "coupling/output/vtu_grid.h"
+#include "coupling/export/forms.h"
+#include "coupling/store/added_forces.h"
+#include "coupling/store/vtu_grid.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "coupling/result/csv.h"
+
 namespace grainfield::coupling {
 
 LammpsIds::LammpsIds(const dem::Snapshot& packing) {
@@ -32,9 +34,10 @@ std::string LammpsIds::note(bool copied) const {
 }
 
 std::string LammpsIds::csv(const dem::Snapshot& packing) const {
-  std::string out = "id,original\n";
-  for (const dem::Grain& g : packing.grains) out += fmt::format("{},{}\n", of(g.id), g.id);
-  return out;
+  Csv out;
+  out.row("id", "original");
+  for (const dem::Grain& g : packing.grains) out.row(of(g.id), g.id);
+  return out.text();
 }
 
 }  // namespace grainfield::coupling

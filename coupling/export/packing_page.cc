@@ -1,5 +1,3 @@
-#include "coupling/export/packing_page.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -7,8 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "coupling/export/forms.h"
 #include "coupling/export/packing_page_script.h"
-#include "coupling/output/vtu.h"
+#include "coupling/store/vtu.h"
 #include "dem/snapshot/images.h"
 
 namespace grainfield::coupling {

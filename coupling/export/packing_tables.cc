@@ -1,5 +1,3 @@
-#include "coupling/export/packing_tables.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +5,9 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "coupling/output/added_forces.h"
+#include "coupling/export/forms.h"
+#include "coupling/result/csv.h"
+#include "coupling/store/added_forces.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -41,29 +41,27 @@ std::string corners_text(const dem::Outline& outline) {
 // An empty cell says that it is not known.
 std::string known(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
+// Components of a vector in the plane or in space.
+std::vector<double> parts(const dem::Vec3& v, int dim) { return {v.data(), v.data() + dim}; }
+
 std::string grains_table(const dem::Snapshot& s) {
-  const bool space = s.dim == 3;
-  std::string out =
-      space ? "id,x,y,z,vx,vy,vz,spin_x,spin_y,spin,qw,qx,qy,qz,radius,mass,inertia,"
-              "volume,fixed,material\n"
-            : "id,x,y,vx,vy,angle,spin,radius,mass,inertia,volume,fixed,material,outline\n";
-  for (const dem::Grain& g : s.grains) {
-    const dem::Vec3 &p = g.position, &v = g.velocity, &w = g.angular_velocity;
-    const auto to = std::back_inserter(out);
-    const int fixed = g.fixed ? 1 : 0;
-    if (space) {
-      fmt::format_to(to, "{},{},{},{},{},{},{},{},{},{},", g.id, p.x(), p.y(), p.z(), v.x(), v.y(),
-                     v.z(), w.x(), w.y(), w.z());
-      fmt::format_to(to, "{},{},{},{},{},{},{},{},{},{}\n", g.orientation[0], g.orientation[1],
-                     g.orientation[2], g.orientation[3], g.radius, g.mass, g.inertia, g.volume,
-                     fixed, g.material);
-    } else {
-      fmt::format_to(to, "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", g.id, p.x(), p.y(), v.x(),
-                     v.y(), g.angle, g.spin, g.radius, g.mass, g.inertia, g.volume, fixed,
-                     g.material, corners_text(g.outline));
+  Csv out(Csv::kAllDigits);
+  if (s.dim == 3) {
+    out.row("id", "x", "y", "z", "vx", "vy", "vz", "spin_x", "spin_y", "spin", "qw", "qx", "qy",
+            "qz", "radius", "mass", "inertia", "volume", "fixed", "material");
+    for (const dem::Grain& g : s.grains) {
+      out.row(g.id, g.position, g.velocity, g.angular_velocity, g.orientation, g.radius, g.mass,
+              g.inertia, g.volume, g.fixed, g.material);
+    }
+  } else {
+    out.row("id", "x", "y", "vx", "vy", "angle", "spin", "radius", "mass", "inertia", "volume",
+            "fixed", "material", "outline");
+    for (const dem::Grain& g : s.grains) {
+      out.row(g.id, parts(g.position, 2), parts(g.velocity, 2), g.angle, g.spin, g.radius, g.mass,
+              g.inertia, g.volume, g.fixed, g.material, corners_text(g.outline));
     }
   }
-  return out;
+  return out.text();
 }
 
 std::string contacts_table(const dem::Snapshot& s) {
@@ -71,42 +69,44 @@ std::string contacts_table(const dem::Snapshot& s) {
   const bool springs =
       space && std::none_of(s.contacts.begin(), s.contacts.end(),
                             [](const auto& c) { return c.spring_vector.hasNaN(); });
-  std::string out = !space    ? "i,j,px,py,nx,ny,fx,fy,friction,spring,sliding\n"
-                    : springs ? "i,j,px,py,pz,nx,ny,nz,fx,fy,fz,friction,sx,sy,sz,sliding\n"
-                              : "i,j,px,py,pz,nx,ny,nz,fx,fy,fz,friction,sliding\n";
-  for (const dem::Contact& c : s.contacts) {
-    const auto to = std::back_inserter(out);
-    const std::string other = c.j >= 0
-                                  ? fmt::format("{}", s.grains[static_cast<std::size_t>(c.j)].id)
-                                  : s.walls[static_cast<std::size_t>(-1 - c.j)].name;
-    fmt::format_to(to, "{},{}", s.grains[static_cast<std::size_t>(c.i)].id, other);
-    for (const dem::Vec3& v : {c.point, c.normal, c.force}) {
-      fmt::format_to(to, ",{},{}", v.x(), v.y());
-      if (space) fmt::format_to(to, ",{}", v.z());
+  Csv out(Csv::kAllDigits);
+  if (!space) {
+    out.row("i", "j", "px", "py", "nx", "ny", "fx", "fy", "friction", "spring", "sliding");
+  } else {
+    out.add("i").add("j");
+    for (const char* vector : {"p", "n", "f"}) {
+      for (const char axis : {'x', 'y', 'z'}) out.add(std::string(vector) + axis);
     }
-    fmt::format_to(to, ",{}", known(c.friction));
-    const dem::Vec3& spring = c.spring_vector;
-    if (springs) fmt::format_to(to, ",{},{},{}", spring.x(), spring.y(), spring.z());
-    if (!space) fmt::format_to(to, ",{}", known(c.spring));
-    fmt::format_to(to, ",{}\n", c.sliding ? 1 : 0);
+    out.add("friction");
+    if (springs) out.add("sx").add("sy").add("sz");
+    out.row("sliding");
   }
-  return out;
+  for (const dem::Contact& c : s.contacts) {
+    out.add(s.grains[static_cast<std::size_t>(c.i)].id);
+    if (c.j >= 0)
+      out.add(s.grains[static_cast<std::size_t>(c.j)].id);
+    else
+      out.add(s.walls[static_cast<std::size_t>(-1 - c.j)].name);
+    for (const dem::Vec3& v : {c.point, c.normal, c.force}) out.add(parts(v, s.dim));
+    out.add(known(c.friction));
+    if (springs) out.add(c.spring_vector);
+    if (!space) out.add(known(c.spring));
+    out.row(c.sliding);
+  }
+  return out.text();
 }
 
 std::string walls_table(const dem::Snapshot& s) {
   if (s.walls.empty()) return "";
-  const bool space = s.dim == 3;
-  std::string out =
-      space ? "name,x,y,z,nx,ny,nz,friction,material\n" : "name,x,y,nx,ny,friction,material\n";
+  Csv out(Csv::kAllDigits);
+  if (s.dim == 3)
+    out.row("name", "x", "y", "z", "nx", "ny", "nz", "friction", "material");
+  else
+    out.row("name", "x", "y", "nx", "ny", "friction", "material");
   for (const dem::Wall& w : s.walls) {
-    out += w.name;
-    for (const dem::Vec3& v : {w.point, w.normal}) {
-      out += fmt::format(",{},{}", v.x(), v.y());
-      if (space) out += fmt::format(",{}", v.z());
-    }
-    out += fmt::format(",{},{}\n", known(w.friction), w.material);
+    out.row(w.name, parts(w.point, s.dim), parts(w.normal, s.dim), known(w.friction), w.material);
   }
-  return out;
+  return out.text();
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
-#include "coupling/export/paraview_script.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+
+#include "coupling/export/forms.h"
 
 namespace grainfield::coupling {
 namespace {

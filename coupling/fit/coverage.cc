@@ -10,7 +10,7 @@
 
 #include "continuum/constants.h"
 #include "coupling/fit/fit_tables.h"
-#include "coupling/output/text_table.h"
+#include "coupling/result/text_table.h"
 #include "coupling/statistics/agreement.h"
 #include "coupling/statistics/parallel.h"
 #include "dem/random/random.h"

@@ -1,9 +1,8 @@
-#include "coupling/fit/figures.h"
-
 #include <algorithm>
 
+#include "coupling/fit/fit_keys.h"
+#include "coupling/fit/heap_models.h"
 #include "coupling/fit/layer_models.h"
-#include "coupling/fit/models.h"
 
 namespace grainfield::coupling {
 namespace {

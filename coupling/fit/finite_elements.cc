@@ -7,7 +7,7 @@
 
 #include "coupling/compare/compare.h"
 #include "coupling/fit/fit_tables.h"
-#include "coupling/models/models.h"
+#include "coupling/models/evaluate_model.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
@@ -88,8 +88,7 @@ std::vector<FiniteElementFit> solve_elements(const std::vector<std::string>& nam
     try {
       const auto model = continuum::make_model(name, filled_settings(*choice, facts));
       const StressFunction stress = [&](const Eigen::MatrixXd& at) { return model->stress(at); };
-      measure(data, weights, fit_named(fits, e.of), seen(stress, family_of(name) == "half plane"),
-              e);
+      measure(data, weights, fit_of(fits, e.of), seen(stress, family_of(name) == "half plane"), e);
     } catch (const continuum::ComputationFailed& failure) {
       e.why = failure.what();
     }

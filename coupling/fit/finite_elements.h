@@ -10,7 +10,7 @@
 #include "coupling/compare/smooth.h"
 #include "coupling/fit/fit.h"
 #include "coupling/models/choice.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 
 namespace grainfield::coupling {
 

@@ -6,9 +6,8 @@
 
 #include "continuum/model.h"
 #include "coupling/case/declare.h"
-#include "coupling/fit/figures.h"
+#include "coupling/fit/heap_models.h"
 #include "coupling/fit/layer_models.h"
-#include "coupling/fit/models.h"
 #include "coupling/fit/open_models.h"
 #include "coupling/observe/setup.h"
 
@@ -18,9 +17,8 @@ namespace grainfield::coupling {
 namespace {
 
 // The words of fit.models, with the free constants of each.
-OwnWords models_of_list(const std::vector<RegistryEntry>& list,
-                        std::optional<std::string> (*beyond)(const std::string&)) {
-  OwnWords out{"fit.models", {}, "", beyond};
+OwnWords models_of_list(const std::vector<RegistryEntry>& list, ModelTextCheck check) {
+  OwnWords out{"fit.models", {}, "", check};
   for (const RegistryEntry& model : list) {
     out.choices.push_back(model.name);
     out.meaning += (out.choices.size() == 1 ? "" : "; ") + model.name;
@@ -92,12 +90,12 @@ void declare_fit_keys(SectionKeys s) {
 }
 
 void fit_heap_models(Study& study) {
-  fit_models(models_of_list(heap_entries({}), refused_heap_model),
+  fit_models(models_of_list(heap_entries({}), check_heap_model),
              {"fe_osl_wedge", "fe_mohr_coulomb_wedge"}, study);
 }
 
 void fit_layer_models(Study& study) {
-  fit_models(models_of_list(layer_entries(), refused_layer_model),
+  fit_models(models_of_list(layer_entries(), check_layer_model),
              {"fe_elastic_half_space", "fe_elastic_layer", "fe_orthotropic_layer", "fe_osl_layer"},
              study);
 }

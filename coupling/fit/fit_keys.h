@@ -1,6 +1,9 @@
 // The section [fit] of piles and of layers under a point load: stress models with free constants.
 #pragma once
+#include <vector>
+
 #include "coupling/case/study.h"
+#include "coupling/result/figure.h"
 
 namespace grainfield::coupling {
 
@@ -15,5 +18,8 @@ void fit_layer_models(Study& study);
 
 /// Throws std::invalid_argument "fit.finite_elements: ..." for a model that this program lacks.
 void check_fit(const Case& value);
+
+/// Their keys in summary.json.
+std::vector<SummaryKey> figures_of_fits();
 
 }  // namespace grainfield::coupling

@@ -14,9 +14,9 @@
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/posteriors.h"
 #include "coupling/observe/heap_rows.h"
-#include "coupling/output/judgement.h"
-#include "coupling/output/text_table.h"
 #include "coupling/report/judgement.h"
+#include "coupling/result/judgement.h"
+#include "coupling/result/text_table.h"
 #include "coupling/structure/yield.h"
 
 namespace grainfield::coupling {
@@ -89,9 +89,9 @@ std::vector<Line> lines_of(const EnsembleFits& fits) {
     return out;
   }
   for (const JudgedModel& s : fits.judgement.models) {
-    const Eigen::VectorXd& values = fit_named(fits.fits, s.name).model;
+    const Eigen::VectorXd& values = fit_of(fits.fits, s.name).model;
     const auto same = std::find_if(out.begin(), out.end(), [&](const Line& line) {
-      const Eigen::VectorXd& other = fit_named(fits.fits, line.name).model;
+      const Eigen::VectorXd& other = fit_of(fits.fits, line.name).model;
       return (values - other).cwiseAbs().maxCoeff() < kSameLine * other.cwiseAbs().maxCoeff();
     });
     if (same != out.end()) {
@@ -121,7 +121,7 @@ Frame residual_frame(const EnsembleFits& fits, const std::string& model, int com
     if (rows.size() < 2) continue;
     frame.series.push_back({fmt::format("at {} h", data.levels[static_cast<std::size_t>(level)]),
                             data.points(rows, 0),
-                            fit_named(fits.fits, model).residual(rows),
+                            fit_of(fits.fits, model).residual(rows),
                             {},
                             false});
   }
@@ -240,11 +240,8 @@ void add_model_lines(const EnsembleFits& fits, const std::vector<Line>& lines,
   const double sign = component == "sigma_xy" ? 1 : -1;
   if (places.rows() >= kFewPlaces) {
     for (const Line& line : lines) {
-      frame.series.push_back({line.label,
-                              places.col(0),
-                              sign * fit_named(fits.fits, line.name).model(rows),
-                              {},
-                              false});
+      frame.series.push_back(
+          {line.label, places.col(0), sign * fit_of(fits.fits, line.name).model(rows), {}, false});
     }
     return;
   }
@@ -366,8 +363,7 @@ std::vector<Section> fit_pictures(const EnsembleFits& fits) {
     }
   }
   std::vector<const Fit*> ranked;
-  for (const JudgedModel& s : fits.judgement.models)
-    ranked.push_back(&fit_named(fits.fits, s.name));
+  for (const JudgedModel& s : fits.judgement.models) ranked.push_back(&fit_of(fits.fits, s.name));
   for (Section& section : posterior_sections(ranked, seen.data.realizations())) {
     out.push_back(std::move(section));
   }

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/fit/fits.h"
+#include "coupling/fit/ensemble_fit.h"
 #include "coupling/run/study_result.h"
 
 namespace grainfield::coupling {

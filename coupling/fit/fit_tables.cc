@@ -8,10 +8,11 @@
 #include <stdexcept>
 
 #include "coupling/judge/words.h"
-#include "coupling/output/text_table.h"
+#include "coupling/result/csv.h"
+#include "coupling/result/text_table.h"
 
 namespace grainfield::coupling {
-const Fit& fit_named(const std::vector<Fit>& fits, const std::string& name) {
+const Fit& fit_of(const std::vector<Fit>& fits, const std::string& name) {
   const auto at =
       std::find_if(fits.begin(), fits.end(), [&](const Fit& f) { return f.name == name; });
   if (at == fits.end()) throw std::logic_error("no fit of " + name);
@@ -88,20 +89,20 @@ const std::string& constants_note() {
 }
 
 std::string parameters_csv(const std::vector<Fit>& fits) {
-  std::string out =
-      "model,parameter,unit,value,error,low,high,covariance_error,bootstrap_error,jackknife_error,"
-      "profile_low,profile_high,at_bound\n";
+  Csv out;
+  out.row("model", "parameter", "unit", "value", "error", "low", "high", "covariance_error",
+          "bootstrap_error", "jackknife_error", "profile_low", "profile_high", "at_bound");
   for (const Fit& f : fits) {
     for (const FittedParameter& p : f.parameters) {
-      out += fmt::format("{},{},{}", f.name, p.parameter.name, p.parameter.unit);
+      out.add(f.name).add(p.parameter.name).add(p.parameter.unit);
       for (const double v : {p.value, p.error, p.low, p.high, p.covariance_error, p.bootstrap_error,
                              p.jackknife_error, p.by_profile.low, p.by_profile.high}) {
-        out += fmt::format(",{}", number(v));
+        out.add(std::isfinite(v) ? v : kNan);
       }
-      out += fmt::format(",{}\n", p.at_bound ? 1 : 0);
+      out.row(p.at_bound);
     }
   }
-  return out;
+  return out.text();
 }
 
 void add_parameters(Summary& summary, const std::vector<Fit>& fits) {

@@ -5,12 +5,12 @@
 
 #include "coupling/fit/fit.h"
 #include "coupling/judge/judgement.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 
 namespace grainfield::coupling {
 
 /// The fit of that name; throws std::logic_error when there is none.
-const Fit& fit_named(const std::vector<Fit>& fits, const std::string& name);
+const Fit& fit_of(const std::vector<Fit>& fits, const std::string& name);
 
 /// Six digits, or "nan".
 std::string number(double value);

@@ -3,7 +3,7 @@
 #include <functional>
 #include <memory>
 
-#include "coupling/fit/fits.h"
+#include "coupling/fit/ensemble_fit.h"
 #include "coupling/observe/observations.h"
 #include "coupling/run/study_result.h"
 

@@ -10,8 +10,8 @@
 
 #include "continuum/open_model.h"
 #include "continuum/settings.h"
+#include "coupling/fit/heap_models.h"
 #include "coupling/fit/layer_models.h"
-#include "coupling/fit/models.h"
 #include "coupling/models/parse_choices.h"
 #include "coupling/models/subject.h"
 
@@ -110,16 +110,15 @@ bool is_unknown_word(const std::string& text) {
                       [&](const continuum::ModelInfo& info) { return info.name == text; });
 }
 
-std::optional<std::string> refused(const std::string& text, const std::vector<RegistryEntry>& known,
-                                   Of of) {
-  if (in_list(known, text)) return "";
-  if (is_unknown_word(text)) return std::nullopt;
+ModelText checked(const std::string& text, const std::vector<RegistryEntry>& known, Of of) {
+  if (in_list(known, text)) return {ModelText::Is::model};
+  if (is_unknown_word(text)) return {ModelText::Is::no_model};
   try {
     check_choice(parse_choice(text, "model"), of);
   } catch (const std::invalid_argument& e) {
-    return e.what();
+    return {ModelText::Is::refused, e.what()};
   }
-  return "";
+  return {ModelText::Is::model};
 }
 
 FitParameter constant_of(const continuum::Parameter& p) {
@@ -190,12 +189,12 @@ RegistryEntry entry_of(const ModelChoice& choice, const RunFacts& facts, double 
 
 }  // namespace
 
-std::optional<std::string> refused_heap_model(const std::string& text) {
-  return refused(text, heap_entries({}), Of::heap);
+ModelText check_heap_model(const std::string& text) {
+  return checked(text, heap_entries({}), Of::heap);
 }
 
-std::optional<std::string> refused_layer_model(const std::string& text) {
-  return refused(text, layer_entries(), Of::layer);
+ModelText check_layer_model(const std::string& text) {
+  return checked(text, layer_entries(), Of::layer);
 }
 
 std::vector<RegistryEntry> chosen_entries(const std::vector<std::string>& texts,

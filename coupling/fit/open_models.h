@@ -2,7 +2,6 @@
 // NAME, NAME:p=free,q=0.3 or LABEL=NAME:... of the registry.
 #pragma once
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,10 +18,10 @@ inline constexpr const char* kOpenModels =
     "NAME:p=free,q=0.3 or LABEL=NAME:... of a closed model of the plane that `grainfield model` "
     "lists";
 
-/// Why this is no model of such a fit; empty: it is one. Nothing for a word that is neither in a
-/// list nor in the registry.
-std::optional<std::string> refused_heap_model(const std::string& text);
-std::optional<std::string> refused_layer_model(const std::string& text);
+/// Whether this is a model of such a fit; no_model: a word that is neither in a list nor in the
+/// registry.
+ModelText check_heap_model(const std::string& text);
+ModelText check_layer_model(const std::string& text);
 
 /// The entries these texts name, in their order; `known`: of the list. Those of the registry are
 /// labelled as parse_choices labels them, and by no name of the list. `height`: m per unit of the

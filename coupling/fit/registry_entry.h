@@ -10,7 +10,7 @@
 
 #include "coupling/fit/layer_sight.h"
 #include "coupling/fit/model.h"
-#include "coupling/models/models.h"
+#include "coupling/models/evaluate_model.h"
 
 namespace grainfield::coupling {
 

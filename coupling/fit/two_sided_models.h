@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "coupling/fit/models.h"
+#include "coupling/fit/heap_models.h"
 
 namespace grainfield::coupling {
 

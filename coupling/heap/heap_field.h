@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/field.h"
+#include "coupling/base/field.h"
 #include "coupling/heap/pile_frame.h"
 
 namespace grainfield::coupling {

@@ -130,7 +130,7 @@ double PileFrame::weight_over_wedge() const {
   return weight / (0.5 * pressure() * (foot(repose_left_deg) + foot(repose_right_deg)));
 }
 
-std::string PileFrame::no_heap(std::size_t number) const {
+std::string PileFrame::why_not_a_heap(std::size_t number) const {
   const auto because = [&](const std::string& why) {
     return fmt::format("realization {}: {}", number, why);
   };

@@ -44,7 +44,7 @@ struct PileFrame {
   double weight_over_wedge() const;
   /// Why this is no heap, with its number as a realization: "realization 3: no line fits a flank";
   /// empty: it is one.
-  std::string no_heap(std::size_t number) const;
+  std::string why_not_a_heap(std::size_t number) const;
   /// From scaled coordinates to the packing's axes; n x 2, m.
   Eigen::MatrixXd to_packing(const Eigen::MatrixXd& scaled) const;
   /// Distance from the apex in half bases: -1 at the left foot, 1 at the right one.

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "coupling/averaging/ensemble.h"
-#include "coupling/field.h"
+#include "coupling/base/field.h"
 
 namespace grainfield::coupling {
 

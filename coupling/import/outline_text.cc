@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "coupling/base/unit.h"
 #include "coupling/import/lines.h"
-#include "coupling/unit.h"
 
 namespace grainfield::coupling {
 

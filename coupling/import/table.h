@@ -14,9 +14,9 @@
 #include <string_view>
 #include <vector>
 
+#include "coupling/base/unit.h"
 #include "coupling/import/lines.h"
 #include "coupling/import/unit_system.h"
-#include "coupling/unit.h"
 #include "dem/space/cell.h"
 
 namespace grainfield::coupling {

@@ -19,7 +19,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "coupling/system/read_input.h"
+#include "coupling/base/read_input.h"
 #include "dem/cannot_read_now.h"
 
 namespace grainfield::coupling {

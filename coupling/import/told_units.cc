@@ -7,8 +7,8 @@
 #include <cctype>
 #include <string_view>
 
+#include "coupling/base/unit.h"
 #include "coupling/import/row_text.h"
-#include "coupling/unit.h"
 #include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
@@ -37,7 +37,8 @@ bool is_foreign_unit(const std::string& word) {
 std::optional<std::string> unit_in(std::string value, const std::vector<std::string>& known) {
   if (value.size() > 2 && std::string("([{").find(value.front()) != std::string::npos)
     value = std::string(trimmed(std::string_view(value).substr(1, value.size() - 2)));
-  for (const char* none : {"", "-", "--", "1", "#", "no.", "No.", "number", "integer", "int", "none"})
+  for (const char* none :
+       {"", "-", "--", "1", "#", "no.", "No.", "number", "integer", "int", "none"})
     if (value == none) return "";
   if (parse_unit(value) || std::find(known.begin(), known.end(), value) != known.end())
     return value;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "coupling/unit.h"
+#include "coupling/base/unit.h"
 
 namespace grainfield::coupling {
 

@@ -1,5 +1,5 @@
 // A judgement in words: the same for terminal, report, Markdown, LaTeX, JSON and Python, which
-// coupling/output/judgement.h and coupling/report/judgement.h write.
+// coupling/result/judgement.h and coupling/report/judgement.h write.
 //
 //   headline     what is supported or nearest, at most 25 words where names are short
 //   agreement    whether any model agrees within the errors

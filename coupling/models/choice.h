@@ -14,4 +14,12 @@ struct ModelChoice {
   continuum::Settings settings;
 };
 
+/// What a text is that may name a model with settings.
+struct ModelText {
+  enum class Is { no_model, model, refused };
+  Is is = Is::no_model;
+  std::string why = {};  ///< it is refused
+};
+using ModelTextCheck = ModelText (*)(const std::string&);
+
 }  // namespace grainfield::coupling

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "coupling/output/key_pattern.h"
+#include "coupling/result/key_pattern.h"
 
 namespace grainfield::coupling {
 

@@ -4,10 +4,10 @@
 #include <map>
 #include <string>
 
-#include "coupling/field.h"
+#include "coupling/base/field.h"
 #include "coupling/models/choice.h"
-#include "coupling/models/models.h"
-#include "coupling/output/tables.h"
+#include "coupling/models/evaluate_model.h"
+#include "coupling/result/tables.h"
 
 namespace grainfield::coupling {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "coupling/compare/smooth_space.h"
+#include "coupling/compare/smooth.h"
 
 namespace grainfield::coupling {
 namespace {

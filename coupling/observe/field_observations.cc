@@ -1,4 +1,6 @@
 // Fields in the models' frame and their horizontal lines.
+#include "coupling/observe/field_observations.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,7 +13,7 @@
 
 #include "coupling/heap/field_rows.h"
 #include "coupling/heap/heap_field.h"
-#include "coupling/observe/lines.h"
+#include "coupling/observe/seen_models.h"
 #include "coupling/run/comparison_page.h"
 #include "dem/snapshot/limits.h"
 
@@ -34,17 +36,6 @@ struct FieldScene {
   std::shared_ptr<const Kernel> kernel;
   bool rings = false;
 };
-
-// Place of a component among the models' stresses; of rings r and t stand for x and y.
-int component_of(std::string component, bool space) {
-  for (std::size_t k = component.size() - 2; k < component.size(); ++k) {
-    if (component[k] == 'r') component[k] = 'x';
-    if (component[k] == 't') component[k] = 'y';
-  }
-  if (component == "sigma_zx") component = "sigma_xz";
-  const auto& names = space ? kSpaceStress : kPlaneStress;
-  return static_cast<int>(std::find(names.begin(), names.end(), component) - names.begin());
-}
 
 // Forces on the base are smeared along it alone; cells that measured lie flat wherever they are, as
 // fits have them (Smoothing::marginal).
@@ -258,47 +249,6 @@ std::shared_ptr<const Kernel> kernel_of(const Field& field, const std::string& w
   return make_kernel(coarse ? field_word(field, "kernel", where) : "heaviside",
                      field_number(field, "width", where),
                      field.is_of_rings() ? 3 : static_cast<int>(field.points.cols()));
-}
-
-ObservedLine observed_line(const Field& field, const LineOf& line,
-                           std::shared_ptr<const Kernel> kernel,
-                           const std::vector<Eigen::Index>& at) {
-  std::vector<Eigen::Index> rows = at;
-  if (rows.empty()) {
-    rows.resize(static_cast<std::size_t>(field.points.rows()));
-    std::iota(rows.begin(), rows.end(), 0);
-  }
-  const bool space = field.points.cols() == 3;
-  const Column& column = *field.find(line.component);
-  const std::string axes = line.component.substr(line.component.size() - 2);
-  ObservedLine out;
-  out.sign = axes[0] == axes[1] ? -1 : 1;
-  out.component = component_of(line.component, space);
-  out.kernel = std::move(kernel);
-  out.places = {field.points(rows, Eigen::all), line.smoothing, out.kernel.get(),
-                field.is_of_heap()};
-  out.both_sides = line.both_sides;
-  Profile& p = out.profile;
-  p.name = line.name;
-  p.key = line.key;
-  p.depth = -out.places.points(0, space ? 2 : 1);
-  p.quantity = (out.sign < 0 ? "-" : "") + line.component;
-  if (space) p.unit = "Pa";
-  p.measured = field.is_measured();
-  p.x = out.places.points.col(0);
-  p.mean = out.sign * column.value(rows);
-  if (column.error.size() == column.value.size()) p.error = column.error(rows);
-  if (column.samples.rows() == column.value.size())
-    p.samples = out.sign * column.samples(rows, Eigen::all);
-  p.independent_length = p.measured ? 0 : out.kernel->independent_length();
-  if (!line.both_sides) return out;
-  p.x = coupling::both_sides(p.x);
-  p.x.head(p.x.size() / 2) *= -1;
-  p.mean = coupling::both_sides(p.mean);
-  if (p.error.size() > 0) p.error = coupling::both_sides(p.error);
-  if (p.samples.size() > 0) p.samples = coupling::both_sides(p.samples);
-  p.independent_length *= 2;  // either side says the same
-  return out;
 }
 
 Observations observe_fields(const NamedFields& fields, const LineOptions& options,

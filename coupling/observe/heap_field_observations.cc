@@ -8,8 +8,8 @@
 
 #include "coupling/heap/field_rows.h"
 #include "coupling/heap/heap_field.h"
+#include "coupling/observe/field_observations.h"
 #include "coupling/observe/heap_rows.h"
-#include "coupling/observe/lines.h"
 
 namespace grainfield::coupling {
 namespace {

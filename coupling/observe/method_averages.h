@@ -5,7 +5,7 @@
 
 #include "coupling/averaging/balance.h"
 #include "coupling/averaging/ensemble.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/averaging_setup.h"
 
 namespace grainfield::coupling {

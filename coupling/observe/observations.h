@@ -10,11 +10,11 @@
 
 #include "continuum/constants.h"
 #include "coupling/averaging/kernel.h"
+#include "coupling/base/field.h"
 #include "coupling/case/case.h"
 #include "coupling/compare/compare.h"
-#include "coupling/field.h"
 #include "coupling/heap/pile_frame.h"
-#include "coupling/models/models.h"
+#include "coupling/models/evaluate_model.h"
 #include "coupling/observe/data.h"
 #include "coupling/observe/heap_facts.h"
 #include "coupling/observe/setup.h"

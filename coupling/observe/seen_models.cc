@@ -1,5 +1,7 @@
 #include "coupling/observe/seen_models.h"
 
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "coupling/models/model_record.h"
@@ -41,7 +43,59 @@ Eigen::VectorXd along(const ObservedLine& line, const Eigen::MatrixXd& stresses)
   return both_sides(Eigen::VectorXd(values.head((line.profile.x.size() + 1) / 2)));
 }
 
+// Place of a component among the models' stresses; of rings r and t stand for x and y.
+int component_of(std::string component, bool space) {
+  for (std::size_t k = component.size() - 2; k < component.size(); ++k) {
+    if (component[k] == 'r') component[k] = 'x';
+    if (component[k] == 't') component[k] = 'y';
+  }
+  if (component == "sigma_zx") component = "sigma_xz";
+  const auto& names = space ? kSpaceStress : kPlaneStress;
+  return static_cast<int>(std::find(names.begin(), names.end(), component) - names.begin());
+}
+
 }  // namespace
+
+ObservedLine observed_line(const Field& field, const LineOf& line,
+                           std::shared_ptr<const Kernel> kernel,
+                           const std::vector<Eigen::Index>& at) {
+  std::vector<Eigen::Index> rows = at;
+  if (rows.empty()) {
+    rows.resize(static_cast<std::size_t>(field.points.rows()));
+    std::iota(rows.begin(), rows.end(), 0);
+  }
+  const bool space = field.points.cols() == 3;
+  const Column& column = *field.find(line.component);
+  const std::string axes = line.component.substr(line.component.size() - 2);
+  ObservedLine out;
+  out.sign = axes[0] == axes[1] ? -1 : 1;
+  out.component = component_of(line.component, space);
+  out.kernel = std::move(kernel);
+  out.places = {field.points(rows, Eigen::all), line.smoothing, out.kernel.get(),
+                field.is_of_heap()};
+  out.both_sides = line.both_sides;
+  Profile& p = out.profile;
+  p.name = line.name;
+  p.key = line.key;
+  p.depth = -out.places.points(0, space ? 2 : 1);
+  p.quantity = (out.sign < 0 ? "-" : "") + line.component;
+  if (space) p.unit = "Pa";
+  p.measured = field.is_measured();
+  p.x = out.places.points.col(0);
+  p.mean = out.sign * column.value(rows);
+  if (column.error.size() == column.value.size()) p.error = column.error(rows);
+  if (column.samples.rows() == column.value.size())
+    p.samples = out.sign * column.samples(rows, Eigen::all);
+  p.independent_length = p.measured ? 0 : out.kernel->independent_length();
+  if (!line.both_sides) return out;
+  p.x = coupling::both_sides(p.x);
+  p.x.head(p.x.size() / 2) *= -1;
+  p.mean = coupling::both_sides(p.mean);
+  if (p.error.size() > 0) p.error = coupling::both_sides(p.error);
+  if (p.samples.size() > 0) p.samples = coupling::both_sides(p.samples);
+  p.independent_length *= 2;  // either side says the same
+  return out;
+}
 
 std::vector<SeenModel> see_models(const Observations& observed,
                                   const std::vector<ModelChoice>& choices,

@@ -7,11 +7,22 @@
 #include <vector>
 
 #include "coupling/compare/compare.h"
-#include "coupling/models/models.h"
+#include "coupling/models/evaluate_model.h"
 #include "coupling/observe/observations.h"
 #include "coupling/run/study_result.h"
 
 namespace grainfield::coupling {
+
+struct LineOf {
+  std::string component, name, key;  ///< of the field; for people; for summary keys
+  Smoothing smoothing = Smoothing::kernel;
+  bool both_sides = false;  ///< the points are radii from 0
+};
+/// The component along these points of a field (models' frame, m), or along all. Cells of a
+/// laboratory count each by itself.
+ObservedLine observed_line(const Field& field, const LineOf& line,
+                           std::shared_ptr<const Kernel> kernel,
+                           const std::vector<Eigen::Index>& at = {});
 
 /// evaluate_model, or another way to the same.
 using ModelEvaluator =

@@ -14,8 +14,8 @@
 #include <variant>
 #include <vector>
 
-#include "coupling/field.h"
-#include "coupling/files/average_files.h"
+#include "coupling/base/field.h"
+#include "coupling/tasks/average_task.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::python {

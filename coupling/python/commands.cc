@@ -9,18 +9,18 @@
 #include <stdexcept>
 
 #include "continuum/model.h"
-#include "coupling/app/progress_text.h"
+#include "coupling/app/progress_line.h"
+#include "coupling/base/signals.h"
 #include "coupling/case/shipped_cases.h"
-#include "coupling/files/compare_field.h"
-#include "coupling/files/fit_files.h"
-#include "coupling/files/measured_field.h"
-#include "coupling/files/places.h"
-#include "coupling/files/strain_files.h"
 #include "coupling/models/fit_names.h"
 #include "coupling/python/bindings.h"
 #include "coupling/run/run_request.h"
 #include "coupling/structure/packing_structure.h"
-#include "coupling/system/signals.h"
+#include "coupling/tasks/compare_task.h"
+#include "coupling/tasks/fit_task.h"
+#include "coupling/tasks/measured_field.h"
+#include "coupling/tasks/placement.h"
+#include "coupling/tasks/strain_task.h"
 
 namespace grainfield::python {
 namespace {
@@ -73,7 +73,7 @@ struct AverageOutcome {
   NamedHeld fields;
   std::vector<std::string> warnings;
   std::string gaps;
-  double seconds = 0;  ///< wall time of average_files
+  double seconds = 0;  ///< wall time of run_average
 };
 
 AverageOutcome average(const std::vector<Source>& sources, const std::vector<Source>& unloaded,
@@ -114,7 +114,7 @@ AverageOutcome average(const std::vector<Source>& sources, const std::vector<Sou
                     rings ? "radius and height" : fmt::format("the packing is {}D", first->dim));
   }
   const auto start = std::chrono::steady_clock::now();
-  coupling::NamedFields fields = coupling::average_files(std::move(request), &gaps, &out.warnings);
+  coupling::NamedFields fields = coupling::run_average(std::move(request), &gaps, &out.warnings);
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   out.gaps = gaps.text(fields.front().second.points);
   for (auto& [name, field] : fields) out.fields.emplace_back(name, held(std::move(field)));
@@ -145,7 +145,7 @@ std::pair<HeldField, std::vector<std::string>> strain(
     const int dim = coupling::snapshot_of(request.before)->dim;
     require_columns(request.points, dim, fmt::format("the packing is {}D", dim));
   }
-  coupling::StrainOutcome outcome = coupling::strain_files(request);
+  coupling::StrainOutcome outcome = coupling::run_strain(request);
   std::vector<std::string> lines;
   for (std::string* line : {&outcome.report, &outcome.images, &outcome.doubt})
     if (!line->empty()) lines.push_back(std::move(*line));
@@ -303,7 +303,7 @@ coupling::FitOutcome fit(const std::vector<std::string>& files,
   request.folder = folder;
   request.threads = threads;
   const Released released(true);
-  return coupling::fit_files(request);
+  return coupling::run_fit(request);
 }
 
 coupling::CompareOutcome compare(const std::string& file,
@@ -323,7 +323,7 @@ coupling::CompareOutcome compare(const std::string& file,
   request.lines.origin = origin;
   request.folder = folder;
   const Released released(true);
-  return coupling::compare_field(request);
+  return coupling::run_compare(request);
 }
 
 std::pair<HeldField, std::string> import_field(const std::string& file, const std::string& geometry,

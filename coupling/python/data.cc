@@ -10,12 +10,12 @@
 
 #include "coupling/import/import.h"
 #include "coupling/import/packing_warnings.h"
-#include "coupling/output/atomic_file.h"
-#include "coupling/output/field_file.h"
-#include "coupling/output/field_io.h"
-#include "coupling/output/tables.h"
 #include "coupling/python/bindings.h"
+#include "coupling/result/field_file.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/store/atomic_file.h"
+#include "coupling/store/field_io.h"
 #include "dem/snapshot/columns.h"
 #include "dem/snapshot/images.h"
 
@@ -138,6 +138,16 @@ py::dict about(const Packing& self) {
   out["applied_force"] = components(s.applied_force, s.dim);
   out["also_loaded"] = s.also_loaded;
   out["attributes"] = s.attributes;
+  py::dict tables;
+  for (const auto& [name, table] : s.tables) {
+    py::dict columns;
+    for (const dem::NumberColumn& c : table) {
+      columns[c.name.c_str()] =
+          py::array_t<double>(static_cast<py::ssize_t>(c.values.size()), c.values.data());
+    }
+    tables[name.c_str()] = columns;
+  }
+  out["tables"] = tables;
   std::vector<std::string> names;
   for (const dem::Wall& wall : s.walls) names.push_back(wall.name);
   out["walls"] = names;

@@ -1,8 +1,8 @@
 // The module itself: its parts, and what becomes of exceptions.
+#include "coupling/base/failure.h"
+#include "coupling/base/signals.h"
+#include "coupling/base/version.h"
 #include "coupling/python/bindings.h"
-#include "coupling/system/failure.h"
-#include "coupling/system/signals.h"
-#include "coupling/version.h"
 
 namespace {
 

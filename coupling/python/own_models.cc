@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "continuum/settings.h"
+#include "coupling/base/signals.h"
 #include "coupling/python/bindings.h"
-#include "coupling/system/signals.h"
 
 namespace grainfield::python {
 namespace {

@@ -1,12 +1,12 @@
 // What compare and fit give: the C++ objects themselves, their numbers as arrays.
 #include "coupling/compare/compare.h"
-#include "coupling/files/compare_field.h"
-#include "coupling/files/fit_files.h"
-#include "coupling/fit/fits.h"
+#include "coupling/fit/ensemble_fit.h"
 #include "coupling/judge/words.h"
-#include "coupling/output/judgement.h"
-#include "coupling/output/profile_columns.h"
 #include "coupling/python/bindings.h"
+#include "coupling/result/judgement.h"
+#include "coupling/result/profile_columns.h"
+#include "coupling/tasks/compare_task.h"
+#include "coupling/tasks/fit_task.h"
 
 namespace grainfield::python {
 namespace {

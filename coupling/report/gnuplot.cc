@@ -1,5 +1,3 @@
-#include "coupling/report/gnuplot.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -21,7 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "coupling/system/signals.h"
+#include "coupling/base/signals.h"
+#include "coupling/report/drawing.h"
 
 extern char** environ;
 

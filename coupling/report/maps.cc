@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -47,8 +48,35 @@ Edges edges_of(const Map& map) {
 
 // Pixels: the y axis with its label, the space between maps, and the colour box with its label.
 constexpr double left_side = 96, between = 70, right_side = 85;
-// Above a map, for its title; the lowest colour box with room for its numbers.
-constexpr double above_map = 36, lowest_bar = 140;
+// Above a map, for one line of its title, and for each further one; the lowest colour box with room
+// for its numbers.
+constexpr double above_map = 36, title_line = 20, lowest_bar = 140;
+// Pixels of a letter of a title.
+constexpr double letter = 8.5;
+
+// Breaks a title behind blanks and '=' so that its lines have at most `most` letters where they
+// can.
+std::vector<std::string> in_lines(const std::string& title, std::size_t most) {
+  std::vector<std::string> out{""};
+  std::size_t from = 0;
+  while (from < title.size()) {
+    const std::size_t end = std::min(title.find_first_of(" =", from), title.size() - 1) + 1;
+    const std::string part = title.substr(from, end - from);
+    if (!out.back().empty() && out.back().size() + part.size() > most) out.emplace_back();
+    out.back() += part;
+    from = end;
+  }
+  return out;
+}
+
+std::string title_command(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) {
+    const std::string quoted = style::quoted(line);
+    text += (text.empty() ? "" : "\\n") + quoted.substr(1, quoted.size() - 2);
+  }
+  return fmt::format("set title \"{}\" offset 0,-0.5 noenhanced\n", text);
+}
 
 }  // namespace
 
@@ -68,7 +96,15 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
   const int rows = (static_cast<int>(all.size()) + columns - 1) / std::max(1, columns);
   const double plot_width =
       (picture.width - right_side - left_side) / std::max(1, columns) - between;
-  const int row_height = static_cast<int>(plot_width * aspect) + 112;
+  std::vector<std::vector<std::string>> titles;
+  std::size_t most_lines = 1;
+  for (const Map& map : all) {
+    titles.push_back(
+        in_lines(map.title, static_cast<std::size_t>((plot_width + between) / letter)));
+    most_lines = std::max(most_lines, titles.back().size());
+  }
+  const double above = above_map + title_line * static_cast<double>(most_lines - 1);
+  const int row_height = static_cast<int>(plot_width * aspect + above - above_map) + 112;
   picture.height = std::max(1, rows) * row_height + 10;
   std::string& p = picture.program;
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -95,27 +131,29 @@ Picture maps(const std::string& title, const std::string& x_label, const std::st
   p += diverging ? style::diverging : style::sequential_palette;
   p += fmt::format(
       "set cbrange [{}:{}]\nset border lw 1 lc rgb '#444444'\nset tics out nomirror\nunset key\n"
-      "set xlabel {} offset 0,0.2\nset ylabel {} offset 1,0\nset cblabel {}\nset multiplot\n",
-      low_limit, high_limit, style::quoted(x_label), style::quoted(y_label),
-      style::quoted(value_label));
+      "set xlabel {} offset 0,0.2\nset cblabel {}\nset multiplot\n",
+      low_limit, high_limit, style::quoted(x_label), style::quoted(value_label));
   for (std::size_t k = 0; k < all.size(); ++k) {
     const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
     const double left = left_side + column * (plot_width + between);
-    const double top = row * static_cast<double>(row_height) + above_map;
+    const double top = row * static_cast<double>(row_height) + above;
     const double w = picture.width, h = picture.height;
     const bool last = k + 1 == all.size();
     // One colour box for all the maps, to their right, beside the first and as high.
     const double box = std::max(plot_width * aspect, lowest_bar);
     p += fmt::format(
         "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset tmargin at screen {:.4f}\n"
-        "set bmargin at screen {:.4f}\nset title {} offset 0,-0.5 noenhanced\n",
-        left / w, (left + plot_width) / w, 1 - top / h, 1 - (top + plot_width * aspect) / h,
-        style::quoted(all[k].title));
+        "set bmargin at screen {:.4f}\n",
+        left / w, (left + plot_width) / w, 1 - top / h, 1 - (top + plot_width * aspect) / h);
+    p += title_command(titles[k]);
+    // Between two maps there is room for the numbers alone.
+    p += column == 0 ? fmt::format("set ylabel {} offset 1,0\n", style::quoted(y_label))
+                     : "unset ylabel\n";
     p += last ? fmt::format(
                     "set colorbox user origin screen {:.4f}, screen {:.4f} size screen 0.018, "
                     "screen {:.4f}\n",
-                    (left_side + columns * (plot_width + between) - 45) / w,
-                    1 - (above_map + box) / h, box / h)
+                    (left_side + columns * (plot_width + between) - 45) / w, 1 - (above + box) / h,
+                    box / h)
               : "unset colorbox\n";
     const Edges edges = edges_of(all[k]);
     p += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", edges.low.x(), edges.high.x(),

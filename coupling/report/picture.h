@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/field.h"
+#include "coupling/base/field.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

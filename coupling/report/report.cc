@@ -6,9 +6,8 @@
 #include <regex>
 #include <sstream>
 
-#include "coupling/output/atomic_file.h"
 #include "coupling/report/drawing.h"
-#include "coupling/report/gnuplot.h"
+#include "coupling/store/atomic_file.h"
 
 namespace grainfield::coupling {
 namespace {

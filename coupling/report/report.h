@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "coupling/output/text_table.h"
 #include "coupling/report/picture.h"
+#include "coupling/result/text_table.h"
 
 namespace grainfield::coupling {
 

@@ -6,8 +6,8 @@
 
 #include "coupling/averaging/extent.h"
 #include "coupling/averaging/layer.h"
-#include "coupling/output/vtu.h"
 #include "coupling/report/style.h"
+#include "coupling/store/vtu.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "continuum/constants.h"
 #include "coupling/judge/words.h"
-#include "coupling/output/tables.h"
 #include "coupling/report/judgement.h"
+#include "coupling/result/tables.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -16,12 +16,11 @@ std::string shown(double value, int digits = 3) {
   return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
 }
 
-// "rough" of rough=layer (base=rough).
+}  // namespace
+
 std::string legend_of(const ModelProfiles& model) {
   return model.label.starts_with(model.key + "=") ? model.key : model.label;
 }
-
-}  // namespace
 
 Frame profile_frame(const Comparison& c, std::size_t profile) {
   const Profile& p = c.profiles[profile];

@@ -8,6 +8,9 @@
 
 namespace grainfield::coupling {
 
+/// "rough" of a model "rough=layer (base=rough)"; of others the label.
+std::string legend_of(const ModelProfiles& model);
+
 /// Grains, with the band of their error, and models: lengths in h, stresses in
 /// comparison.scale.unit.
 /// The legend has a model's own label without its settings, which distances_table tells.

@@ -17,8 +17,8 @@
 #include <thread>
 #include <utility>
 
+#include "coupling/base/signals.h"
 #include "coupling/run/realization_file.h"
-#include "coupling/system/signals.h"
 #include "dem/cannot_read_now.h"
 #include "dem/run/run.h"
 #include "dem/snapshot/number.h"

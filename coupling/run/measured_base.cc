@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "coupling/case/declare.h"
-#include "coupling/output/field_io.h"
+#include "coupling/store/field_io.h"
 
 namespace grainfield::coupling {
 namespace {

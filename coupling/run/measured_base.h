@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "coupling/case/study.h"
-#include "coupling/output/tables.h"
 #include "coupling/report/picture.h"
+#include "coupling/result/tables.h"
 
 namespace grainfield::coupling {
 

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "continuum/model.h"
-#include "coupling/system/signals.h"
+#include "coupling/base/signals.h"
 #include "dem/run/run.h"
 #include "dem/storage_failed.h"
 

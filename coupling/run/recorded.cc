@@ -4,50 +4,41 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Core>
-#include <sstream>
 #include <stdexcept>
 
+#include "coupling/result/csv.h"
 #include "coupling/run/realization_file.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 
-RecordedColumns recorded_columns(const dem::Snapshot& state, const std::string& prefix,
+RecordedColumns recorded_columns(const dem::Snapshot& state, const std::string& table,
                                  std::span<const char* const> names, const std::string& file) {
   RecordedColumns out;
+  if (const auto found = state.tables.find(table); found != state.tables.end()) {
+    for (const dem::NumberColumn& column : found->second) out[column.name] = column.values;
+  }
   for (const char* name : names) {
-    const std::string key = prefix + ":" + name;
-    const auto at = state.attributes.find(key);
-    if (at == state.attributes.end()) {
-      throw std::invalid_argument(fmt::format("{}: has no attribute {}", file, key));
+    const auto at = out.find(name);
+    if (at == out.end()) {
+      throw std::invalid_argument(fmt::format("{}: has no table {} with {}", file, table, name));
     }
-    std::vector<double>& column = out[name];
-    std::istringstream words(at->second);
-    for (std::string word; words >> word;) {
-      const auto number = dem::parse_number(word);
-      if (!number) {
-        throw std::invalid_argument(
-            fmt::format("{}: {} holds \"{}\"; it must hold numbers", file, key, word));
-      }
-      column.push_back(*number);
-    }
-    const std::size_t rows = out.at(names.front()).size();
-    if (column.empty() || column.size() != rows) {
-      throw std::invalid_argument(fmt::format("{}: {} has {} numbers, {}:{} {}", file, key,
-                                              column.size(), prefix, names.front(), rows));
+    const std::size_t rows = at->second.size(), wanted = out.begin()->second.size();
+    if (rows == 0 || rows != wanted) {
+      throw std::invalid_argument(fmt::format("{}: {} of table {} has {} numbers, {} {}", file,
+                                              name, table, rows, out.begin()->first, wanted));
     }
   }
   return out;
 }
 
 std::string recorded_csv(const RecordedColumns& columns, std::span<const char* const> names) {
-  std::string out = fmt::format("{}\n", fmt::join(names, ","));
+  Csv out;
+  out.row(names);
   for (std::size_t k = 0; k < columns.at(names.front()).size(); ++k) {
-    std::vector<std::string> row;
-    for (const char* name : names) row.push_back(fmt::format("{:.9g}", columns.at(name)[k]));
-    out += fmt::format("{}\n", fmt::join(row, ","));
+    for (const char* name : names) out.add(columns.at(name)[k]);
+    out.end_row();
   }
-  return out;
+  return out.text();
 }
 
 Chart recorded_chart(const RecordedColumns& columns, const std::string& title, const std::string& y,

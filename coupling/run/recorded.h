@@ -1,4 +1,4 @@
-// What a simulation recorded over time: columns of numbers in a state's attributes PREFIX:NAME.
+// What a simulation recorded over time, in a table of a state.
 #pragma once
 #include <map>
 #include <span>
@@ -6,17 +6,17 @@
 #include <utility>
 #include <vector>
 
-#include "coupling/output/figure.h"
 #include "coupling/report/picture.h"
+#include "coupling/result/figure.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
 
 /// Equally long columns by name.
 using RecordedColumns = std::map<std::string, std::vector<double>>;
-/// Throws std::invalid_argument naming the file and the column that is missing, empty, no number or
-/// as long as no other.
-RecordedColumns recorded_columns(const dem::Snapshot& state, const std::string& prefix,
+/// The state's table of that name. Throws std::invalid_argument naming the file and the column of
+/// these that is missing, empty or as long as no other.
+RecordedColumns recorded_columns(const dem::Snapshot& state, const std::string& table,
                                  std::span<const char* const> names, const std::string& file);
 
 /// history.csv: a row a record, the columns in this order.

@@ -14,16 +14,16 @@
 
 #include "continuum/fe/elastic.h"
 #include "continuum/model.h"
+#include "coupling/base/signals.h"
+#include "coupling/base/version.h"
 #include "coupling/case/keys.h"
 #include "coupling/case/study.h"
-#include "coupling/output/atomic_file.h"
-#include "coupling/output/judgement.h"
-#include "coupling/output/output_folder.h"
+#include "coupling/result/judgement.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/sweep.h"
-#include "coupling/system/signals.h"
-#include "coupling/version.h"
+#include "coupling/store/atomic_file.h"
+#include "coupling/store/output_folder.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::coupling {
@@ -419,7 +419,7 @@ void run_case(const Case& value, const Ranks& ranks, const RunOptions& options) 
     if (ranks.first()) say_when_stopped(how_to_go_on(options));
     compute(value, place, ranks, options);
     on_first_rank(ranks, [&] {
-      const std::string gone = told_of_gone(options.folder, place.publish());
+      const std::string gone = gone_note(options.folder, place.publish());
       if (!gone.empty()) options.note(gone);
     });
   } catch (const Interrupted&) {

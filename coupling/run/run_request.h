@@ -3,7 +3,7 @@
 #include <string>
 
 #include "coupling/case/case.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/ranks.h"
 #include "coupling/run/run_case.h"
 

@@ -5,20 +5,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 
+#include "coupling/base/version.h"
 #include "coupling/case/study.h"
-#include "coupling/export/packing_page.h"
+#include "coupling/export/forms.h"
 #include "coupling/judge/words.h"
-#include "coupling/output/atomic_file.h"
-#include "coupling/output/judgement.h"
-#include "coupling/output/vtu.h"
 #include "coupling/report/judgement.h"
+#include "coupling/result/judgement.h"
 #include "coupling/run/comparison_page.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/statistics/spread.h"
+#include "coupling/store/atomic_file.h"
+#include "coupling/store/vtu.h"
 #include "coupling/structure/force_chains.h"
-#include "coupling/version.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -41,6 +42,8 @@ std::string figure_text(const Summary& summary, const std::string& key) {
 
 void write_grains(const std::string& folder, const StudyResult& result) {
   const OutputSetup& want = result.value.output;
+  const std::string states = folder + "/states";
+  if (want.vtu && !result.realizations.empty()) std::filesystem::create_directories(states);
   for (std::size_t r = 0; r < result.realizations.size(); ++r) {
     if (!want.snapshots && !(want.vtu && r == 0)) break;
     const Realization grains = read_realization(result.realizations[r]);
@@ -52,10 +55,10 @@ void write_grains(const std::string& folder, const StudyResult& result) {
       if (!want.vtu || r > 0) continue;
       // Displacements are seen from the first state.
       const dem::Snapshot& first = grains.snapshots.front().second;
-      write_grains_vtu(fmt::format("{}/grains_{}.vtu", folder, name), state,
+      write_grains_vtu(fmt::format("{}/grains_{}.vtu", states, name), state,
                        &state == &first ? nullptr : &first);
-      write_contacts_vtu(fmt::format("{}/contacts_{}.vtu", folder, name), state);
-      write_chains_vtu(fmt::format("{}/chains_{}.vtu", folder, name), state,
+      write_contacts_vtu(fmt::format("{}/contacts_{}.vtu", states, name), state);
+      write_chains_vtu(fmt::format("{}/chains_{}.vtu", states, name), state,
                        chain_of_contacts(force_chains(state), state.contacts.size()));
     }
   }

@@ -7,10 +7,10 @@
 
 #include "coupling/case/case.h"
 #include "coupling/compare/compare.h"
-#include "coupling/output/field_io.h"
-#include "coupling/output/tables.h"
 #include "coupling/report/report.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/realization_file.h"
+#include "coupling/store/field_io.h"
 
 namespace grainfield::coupling {
 
@@ -93,8 +93,8 @@ void add_warnings(StudyResult& result);
 /// Means of the realizations' figures and, of two or more, KEY.least, .most, .standard_error.
 void add_figures(Summary& summary, const std::map<std::string, std::vector<double>>& figures);
 
-/// Writes summary.json, profiles.*, fields.h5 + .xdmf (where there are any), snapshots.h5, *.vtu,
-/// report.html and case.toml into a folder that exists. Returns what the report lacks
+/// Writes summary.json, profiles.*, fields.h5 + .xdmf (where there are any), snapshots.h5,
+/// states/*.vtu, report.html and case.toml into a folder that exists. Returns what the report lacks
 /// (ReportResult::complaint).
 std::string write_study(const std::string& folder, const StudyResult& result);
 

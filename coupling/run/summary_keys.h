@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "coupling/output/figure.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/figure.h"
+#include "coupling/result/tables.h"
 
 namespace grainfield::coupling {
 

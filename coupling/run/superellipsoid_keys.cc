@@ -1,5 +1,4 @@
-#include "coupling/run/superellipsoid_keys.h"
-
+#include "coupling/run/grain_keys.h"
 #include "dem/shapes/superellipsoid.h"
 
 namespace grainfield::coupling {

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "coupling/judge/words.h"
-#include "coupling/output/atomic_file.h"
+#include "coupling/run/comparison_page.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/run/sweep_differences.h"
+#include "coupling/store/atomic_file.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -85,6 +87,17 @@ std::string in_words(std::string name) {
   return name;
 }
 
+// "friction = 0.3", or the variant's name.
+std::vector<std::string> names_of(const Case& value, std::size_t members) {
+  std::vector<std::string> out;
+  for (std::size_t m = 0; m < members; ++m) {
+    out.push_back(value.sweep.key == "variant"
+                      ? value.sweep.values[m]
+                      : fmt::format("{} = {}", value.sweep.key, value.sweep.values[m]));
+  }
+  return out;
+}
+
 // Every member's own frames, grains beside models.
 Picture side_by_side(const Case& value, const std::vector<StudyResult>& results) {
   std::vector<Frame> frames;
@@ -102,6 +115,28 @@ Picture side_by_side(const Case& value, const std::vector<StudyResult>& results)
   return picture;
 }
 
+// Adds the nearest model of each member as a dashed line. Members often share one, such as the
+// layer under several loads: it is drawn once, in the units of the first of them.
+void add_nearest_models(const std::vector<StudyResult>& results,
+                        const std::vector<std::string>& names, std::size_t profile, Frame& frame) {
+  std::set<std::string> drawn;
+  for (std::size_t m = 0; m < results.size(); ++m) {
+    const Comparison& c = results[m].comparison;
+    if (profile >= c.profiles.size()) continue;
+    for (std::size_t k = 0; k < c.models.size(); ++k) {
+      if (c.models[k].key != c.judgement.best || !drawn.insert(c.models[k].label).second) continue;
+      const DrawnLine line = drawn_line(c, k, profile);
+      Series series{fmt::format("{} ({})", legend_of(c.models[k]), names[m]),
+                    line.x / c.scale.h,
+                    line.y / c.scale.unit,
+                    {},
+                    false};
+      series.colour = static_cast<int>(m);
+      frame.series.push_back(std::move(series));
+    }
+  }
+}
+
 // Whether a member has units of its own: F/h of its load, rho g h of its pile.
 bool has_scale(const Comparison& c) { return c.scale.h > 0 && c.scale.unit > 0; }
 
@@ -110,6 +145,7 @@ bool has_scale(const Comparison& c) { return c.scale.h > 0 && c.scale.unit > 0; 
 Picture member_profiles(const Case& value, const std::vector<SweepCase>& members,
                         const std::vector<StudyResult>& results) {
   std::vector<Frame> frames;
+  const std::vector<std::string> names = names_of(value, members.size());
   const Comparison& one = results.front().comparison;
   const bool scaled = std::all_of(results.begin(), results.end(),
                                   [](const StudyResult& r) { return has_scale(r.comparison); });
@@ -121,9 +157,9 @@ Picture member_profiles(const Case& value, const std::vector<SweepCase>& members
       if (p >= c.profiles.size()) continue;
       const Profile& own = c.profiles[p];
       const double length = scaled ? c.scale.h : 1, unit = scaled ? c.scale.unit : 1;
-      frame.series.push_back({fmt::format("{} = {}", value.sweep.key, value.sweep.values[m]),
-                              own.x / length, own.mean / unit, own.error / unit, m == 0});
+      frame.series.push_back({names[m], own.x / length, own.mean / unit, own.error / unit, m == 0});
     }
+    if (scaled) add_nearest_models(results, names, p, frame);
     frames.push_back(std::move(frame));
   }
   const Profile& first = one.profiles.front();
@@ -134,6 +170,11 @@ Picture member_profiles(const Case& value, const std::vector<SweepCase>& members
       scaled ? curves(title, "x / h", fmt::format("{}  ({})", normal, one.scale.stress), frames)
              : curves(title, "x (m)", fmt::format("{}  ({})", normal, first.unit), frames);
   picture.caption = "Mean over realizations; the band is the first member's standard error.";
+  if (scaled && !one.models.empty()) {
+    picture.caption +=
+        " A dashed line is the nearest model of the member in brackets; the members' "
+        "own reports have the other models.";
+  }
   return picture;
 }
 
@@ -162,13 +203,12 @@ std::vector<std::string> curve_titles(const std::vector<StudyResult>& results) {
 Picture member_curves(const Case& value, const std::vector<SweepCase>& members,
                       const std::vector<StudyResult>& results) {
   std::vector<Frame> frames;
+  const std::vector<std::string> names = names_of(value, members.size());
   for (const std::string& title : curve_titles(results)) {
     Frame frame{title, {}};
     for (std::size_t m = 0; m < members.size(); ++m) {
       Series series = curve_of(results[m], title);
-      series.label = value.sweep.key == "variant"
-                         ? value.sweep.values[m]
-                         : fmt::format("{} = {}", value.sweep.key, value.sweep.values[m]);
+      series.label = names[m];
       frame.series.push_back(std::move(series));
     }
     frames.push_back(std::move(frame));
@@ -201,14 +241,9 @@ std::string write_sweep(const std::string& folder, const Case& value,
   Report report;
   report.title = title_of(value);
   report.subtitle = fmt::format("{} over {} values", value.sweep.key, members.size());
+  const std::vector<std::string> names = names_of(value, members.size());
   std::vector<Summary> summaries;
-  std::vector<std::string> names;
-  for (std::size_t m = 0; m < members.size(); ++m) {
-    summaries.push_back(results[m].summary);
-    names.push_back(value.sweep.key == "variant"
-                        ? value.sweep.values[m]
-                        : fmt::format("{} = {}", value.sweep.key, value.sweep.values[m]));
-  }
+  for (const StudyResult& result : results) summaries.push_back(result.summary);
   const std::vector<OverviewColumn> columns = overview_of(results);
   const auto differences = sweep_differences(columns, summaries);
   std::string sentence = differences_sentence(differences, names);

@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "continuum/constants.h"
+#include "coupling/base/unknown_name.h"
 #include "coupling/statistics/parallel.h"
-#include "coupling/unknown_name.h"
 #include "dem/random/random.h"
 
 namespace grainfield::coupling {

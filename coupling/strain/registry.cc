@@ -1,7 +1,7 @@
 #include <stdexcept>
 
+#include "coupling/base/unknown_name.h"
 #include "coupling/strain/measure.h"
-#include "coupling/unknown_name.h"
 
 namespace grainfield::coupling {
 namespace {

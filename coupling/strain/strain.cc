@@ -7,9 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "coupling/base/unknown_name.h"
 #include "coupling/statistics/parallel.h"
 #include "coupling/strain/measure.h"
-#include "coupling/unknown_name.h"
 
 namespace grainfield::coupling {
 namespace {

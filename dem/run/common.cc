@@ -155,11 +155,6 @@ void check_superellipsoid_material(const MaterialSetup& material) {
   if (RollingLaw::of(material).on()) refuse_rolling_superellipsoids();
 }
 
-SleepSettings sleep_settings(const SleepSetup& s) {
-  return {s.on,         s.quiet_time, s.quiet_move, s.quiet_creep, s.quiet_force,
-          s.wake_force, s.wake_time,  s.wake_shock, s.wake_speed,  s.wake_reach};
-}
-
 void check_background_damping(const RestSetup& rest, double time_step) {
   if (rest.background_damping * time_step <= 1) return;
   throw std::invalid_argument(fmt::format(

@@ -34,7 +34,6 @@ void add_reached(const std::string& prefix, const Reached& reached,
 EngineSettings engine_settings(const MaterialSetup& material, const MotionSetup& motion,
                                const GrainExtremes& extremes, int threads, bool irregular = false,
                                double reserve = 1, ShapeKind shape = {});
-SleepSettings sleep_settings(const SleepSetup& sleep);
 /// Throws std::invalid_argument naming the key: a law to which superellipsoids cannot offer what it
 /// measures, or resistance against rolling.
 void check_superellipsoid_material(const MaterialSetup& material);

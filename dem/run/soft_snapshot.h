@@ -1,7 +1,5 @@
 // What the snapshots of soft disks under implicit motion share.
 #pragma once
-#include <fmt/format.h>
-
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -17,14 +15,14 @@ std::vector<Grain> grains_of(const std::vector<Body<2>>& bodies, const std::vect
 /// The contact's forces at rest, without dashpots; its friction is left 0.
 Contact contact_of(const SoftTouch& touch, const std::vector<Grain>& grains);
 
-/// Attributes PREFIX:COLUMN with the column's values of all records, in one line.
+/// The table `name` of the snapshot: a row a record, of pure numbers.
 template <std::size_t n, class Records>
-void keep_columns(const std::string& prefix, const char* const (&columns)[n],
-                  const Records& records, Snapshot& to) {
+void keep_columns(const std::string& name, const char* const (&columns)[n], const Records& records,
+                  Snapshot& to) {
+  NumberTable& table = to.tables[name];
   for (std::size_t c = 0; c < n; ++c) {
-    std::string text;
-    for (const auto& r : records) text += fmt::format("{}{:.12g}", text.empty() ? "" : " ", r[c]);
-    to.attributes[prefix + ":" + columns[c]] = text;
+    table.push_back({columns[c], "1", {}});
+    for (const auto& r : records) table.back().values.push_back(r[c]);
   }
 }
 

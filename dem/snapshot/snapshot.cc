@@ -20,6 +20,7 @@
 #include "dem/snapshot/hdf5_file.h"
 #include "dem/snapshot/limits.h"
 #include "dem/snapshot/number.h"
+#include "dem/snapshot/number_tables.h"
 #include "dem/snapshot/table_file.h"
 #include "dem/snapshot/wall_forces.h"
 
@@ -256,6 +257,7 @@ void add_snapshot(hid_t file, const std::string& group_name, const Snapshot& s) 
   write_lists(w, "triangles", 9, s.walls, &Wall::triangles);
 
   if (s.cell.is_periodic()) write_cell(group, s.cell);
+  write_number_tables(group, s);
 }
 
 // Throws with the names of those there are.
@@ -388,6 +390,7 @@ Snapshot read_snapshot(const std::string& file, const std::string& group_name) {
   read_walls(hdf5::open_group(group, "walls"), source, s);
   read_contacts(hdf5::open_group(group, "contacts"), source, s);
   s.cell = read_cell(group, source);
+  read_number_tables(group, where, s);
   check_snapshot(s, where);
   return s;
 }

@@ -84,6 +84,14 @@ struct Contact {
   double twisting_spring = 0;
 };
 
+/// A column of numbers that a run recorded; unit "1": pure numbers, "": not told.
+struct NumberColumn {
+  std::string name, unit;
+  std::vector<double> values;
+};
+/// Equally long columns, in their order.
+using NumberTable = std::vector<NumberColumn>;
+
 struct Snapshot {
   int dim = 2;
   double time = 0;                 ///< s
@@ -96,6 +104,8 @@ struct Snapshot {
   std::vector<Contact> contacts;            ///< sorted by (i, j)
   std::vector<Wall> walls;
   std::map<std::string, std::string> attributes;  ///< law, parameters, seed, version, ...
+  /// What the study recorded on the way to this state, by name: "settling", "pair", ...
+  std::map<std::string, NumberTable> tables{};
 };
 
 /// Whether the grain of this id carries the applied force.

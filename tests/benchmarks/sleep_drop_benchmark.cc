@@ -101,6 +101,7 @@ enum class Mode { sleep, awake, newton };
 
 struct Drops {
   double seconds = 0, awake = 0;  // CPU s per grain dropped; mean
+  double grain_step = 0;          // CPU s for a step of a grain that is awake
   double snapshot = 0;            // CPU s for one
   double newton = 0;              // CPU s of the relaxations per grain dropped
   int failed = 0;                 // of them
@@ -138,7 +139,7 @@ Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, Mode mo
   std::vector<ShapedGrain> grains;
   for (const auto& g : heap.grains) grains.push_back({g.outline, g.radius, g.volume, g.angle});
   dem::EngineSettings s = settings_of(setup, grains);
-  s.sleep = dem::sleep_settings(setup.sleep);
+  s.sleep = setup.sleep;
   s.sleep.on = mode == Mode::sleep;
   auto engine = dem::make_engine(s, heap);
   double top = 0, axis = 0;
@@ -154,6 +155,7 @@ Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, Mode mo
   engine->step(kSamples * steps);
   dem::Random random(7);
   Drops out;
+  double grain_steps = 0;
   for (int n = 0; n < drops; ++n) {
     const ShapedGrain shaped = dem::draw_grain(setup.shape, random);
     dem::NewGrain g =
@@ -171,6 +173,7 @@ Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, Mode mo
       seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
       const int awake = engine->motion().awake;
       out.awake += static_cast<double>(awake) / (kSamples * drops);
+      grain_steps += static_cast<double>(awake) * static_cast<double>(steps);
       fmt::print(" {:4d}", awake);
     }
     fmt::print("  {:.2f} CPU s\n", seconds);
@@ -179,6 +182,7 @@ Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, Mode mo
     if (mode == Mode::newton) engine = dem::make_engine(s, relaxed(engine->snapshot(), s, out));
   }
   out.newton /= drops;
+  out.grain_step = out.seconds * drops / grain_steps;
   engine->step(2 * kSamples * steps);
   const dem::Snapshot end = engine->snapshot();
   out.level = dem::measure_relaxation(end, end, d).levels_before;
@@ -187,7 +191,7 @@ Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, Mode mo
 
 // Numbers of `setup.sleep` by their keys.
 bool set_sleep(PileSetup& setup, const std::string& key, double value) {
-  dem::SleepSetup& k = setup.sleep;
+  dem::SleepSettings& k = setup.sleep;
   const std::pair<const char*, double*> known[] = {
       {"quiet_time", &k.quiet_time},   {"quiet_move", &k.quiet_move},
       {"quiet_creep", &k.quiet_creep}, {"quiet_force", &k.quiet_force},
@@ -238,14 +242,17 @@ int main(int argc, char** argv) {
             : dem::read_snapshot(heap_name.substr(0, colon), heap_name.substr(colon + 1));
     const Drops asleep = drop(setup, heap, drops, Mode::sleep);
     fmt::print(
-        "{} grains: CPU s per grain dropped {:.3f} with sleeping ({:.0f} awake); levels carry "
-        "their load to {:.2f} %\n",
-        heap.grains.size(), asleep.seconds, asleep.awake, 100 * asleep.level);
+        "{} grains: CPU s per grain dropped {:.3f} with sleeping ({:.0f} awake, {:.0f} ns for a "
+        "step "
+        "of one); levels carry their load to {:.2f} %\n",
+        heap.grains.size(), asleep.seconds, asleep.awake, 1e9 * asleep.grain_step,
+        100 * asleep.level);
     if (asleep_alone) return 0;
     const Drops awake = drop(setup, heap, std::max(1, drops / 4), Mode::awake),
                 newton = drop(setup, heap, std::max(1, drops / 4), Mode::newton);
-    fmt::print("{:.3f} with all awake, ratio {:.2f}; a snapshot {:.4f}\n", awake.seconds,
-               awake.seconds / asleep.seconds, asleep.snapshot);
+    fmt::print("{:.3f} with all awake ({:.0f} ns), ratio {:.2f}; a snapshot {:.4f}\n",
+               awake.seconds, 1e9 * awake.grain_step, awake.seconds / asleep.seconds,
+               asleep.snapshot);
     fmt::print(
         "with Newton's method to {:g} after each grain: {:.3f} and {:.3f} more for it; {} of "
         "{} found no rest\n",

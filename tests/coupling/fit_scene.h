@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/fit/models.h"
+#include "coupling/fit/heap_models.h"
 #include "coupling/fit/selection.h"
 #include "dem/random/random.h"
 

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "coupling/compare/verdict.h"
-#include "coupling/files/compare_field.h"
+#include "coupling/compare/compare.h"
 #include "coupling/judge/judge.h"
 #include "coupling/judge/power.h"
+#include "coupling/tasks/compare_task.h"
 #include "dem/random/random.h"
 
 namespace grainfield::coupling::test {
@@ -85,7 +85,7 @@ class ManyRealizations {
     CompareRequest request;
     request.file = file;
     request.models = models;
-    all_ = compare_field(request).comparison;
+    all_ = run_compare(request).comparison;
   }
 
   int realizations() const { return all_.realizations; }

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "coupling/files/average_files.h"
-#include "coupling/files/compare_field.h"
-#include "coupling/files/fit_files.h"
 #include "coupling/import/import.h"
-#include "coupling/models/models.h"
+#include "coupling/models/evaluate_model.h"
 #include "coupling/models/parse_choices.h"
+#include "coupling/tasks/average_task.h"
+#include "coupling/tasks/compare_task.h"
+#include "coupling/tasks/fit_task.h"
 #include "tests/coupling/carried_stress_scene.h"
 #include "tests/coupling/import_scene.h"
 #include "tests/coupling/program.h"
@@ -128,7 +128,7 @@ class KnownLayers {
             {"layers.h5", fmt::format("/{:03}/{}", r, name), through_import(folder, *state)});
       }
     }
-    return average_files(request);
+    return run_average(request);
   }
 
   /// One more ensemble, judged with all its models.
@@ -137,7 +137,7 @@ class KnownLayers {
     request.file = "layers.h5";
     request.held = fields(truth, realizations, seed, tally);
     request.models = models;
-    const Comparison compared = compare_field(request).comparison;
+    const Comparison compared = run_compare(request).comparison;
     double spread = 0, signal = 0;
     for (const Profile& p : compared.profiles) {
       spread += realizations * p.error.array().isFinite().select(p.error, 0).squaredNorm();
@@ -180,7 +180,7 @@ class KnownHeaps {
     }
     request.models = models;
     request.overrides = {"fit.bootstrap=0"};
-    FitOutcome out = fit_files(request);
+    FitOutcome out = run_fit(request);
     const FitData& data = out.fits->observed.data;
     tally.noise += std::sqrt((data.samples.colwise() - data.mean()).squaredNorm() /
                              (realizations - 1) / data.mean().squaredNorm());

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "coupling/fit/finite_elements.h"
+#include "coupling/fit/heap_models.h"
 #include "coupling/fit/layer_models.h"
 #include "coupling/fit/layer_sight.h"
-#include "coupling/fit/models.h"
 #include "coupling/fit/selection.h"
 #include "dem/random/random.h"
 

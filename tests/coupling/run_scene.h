@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "program.h"
 

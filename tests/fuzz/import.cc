@@ -6,7 +6,7 @@
 #include <list>
 #include <stdexcept>
 
-#include "coupling/app/cell_text.h"
+#include "coupling/app/terminal.h"
 #include "coupling/import/import.h"
 #include "coupling/import/packing_warnings.h"
 #include "dem/snapshot/check_snapshot.h"

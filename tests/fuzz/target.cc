@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "coupling/system/failure.h"
+#include "coupling/base/failure.h"
 
 namespace grainfield::fuzz {
 namespace {

@@ -101,3 +101,25 @@ def test_one_run_at_a_time(case, tmp_path):
 def test_shipped_cases_have_names():
     assert gf.cases()["point-load-mono"].endswith("point-load-mono.toml")
     assert "did you mean point-load-mono" in error_of(lambda: gf.run("point-load-mno"))
+
+
+def test_tables_of_numbers_open_in_h5py(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    program("run", "implicit-settling", "--quick", "-o", tmp_path / "out", "--set", "lattice.base_grains=5",
+            "--set", 'sweep.values=["wells"]', "--set", "output.report=false")
+    folder = next((tmp_path / "out").rglob("history.csv")).parent
+    history = np.genfromtxt(folder / "history.csv", delimiter=",", names=True)
+    file = folder / "snapshots.h5"
+    with h5py.File(file) as opened:
+        groups = []
+        opened.visit(lambda name: groups.append(name) if name.endswith("tables/settling") else None)
+        group = opened[groups[0]]
+        frame = {name: data[()] for name, data in group.items()}  # what pandas.DataFrame takes
+        assert group["time"].attrs["unit"] in ("1", b"1")
+    assert set(frame) == set(history.dtype.names)
+    assert {len(values) for values in frame.values()} == {len(history)}
+    for name in frame:
+        np.testing.assert_allclose(frame[name], history[name], rtol=1e-8, atol=1e-300)
+    state = groups[0].removesuffix("/tables/settling")
+    table = gf.read(f"{file}:{state}").tables["settling"]
+    np.testing.assert_array_equal(table["kinetic"], frame["kinetic"])

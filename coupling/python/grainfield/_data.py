@@ -180,6 +180,8 @@ class Packing(_Rows):
         self.also_loaded: list[int] = about["also_loaded"]
         self.applied_force = np.array(about["applied_force"])  #: N, on each loaded grain
         self.attributes: dict[str, str] = about["attributes"]
+        #: what a study recorded on the way to this state, e.g. tables["pair"]["depth"]; pandas.DataFrame takes each
+        self.tables: dict[str, dict[str, np.ndarray]] = about["tables"]
         #: periodic (dim, bool), low (dim), m, edges (dim, dim), m, one a row, velocity_gradient, 1/s
         self.cell = {name: np.array(value) for name, value in about["cell"].items()}
         self.contacts = Contacts(core)

@@ -9,8 +9,8 @@
 #include "coupling/averaging/cone.h"
 #include "coupling/case/case.h"
 #include "coupling/heap/dip.h"
-#include "coupling/observe/lines.h"
 #include "coupling/observe/method_averages.h"
+#include "coupling/observe/seen_models.h"
 #include "coupling/run/realization_file.h"
 
 namespace grainfield::coupling {

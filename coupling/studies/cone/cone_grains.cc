@@ -180,7 +180,7 @@ EngineSettings cone_settings(const ConeSetup& s, const std::vector<ShapedGrain>&
                       is_sphere(p) ? ShapeKind::sphere : ShapeKind::superellipsoid);
   out.gravity_y = 0;
   out.gravity_z = -s.material.gravity;
-  out.sleep = sleep_settings(s.sleep);
+  out.sleep = s.sleep;
   check_background_damping(s.rest, out.time_step);
   check_countable("cone.rate", p.grains / p.rate, out.time_step);
   const double most = kMostWay * sample_radii(as_sample(p)).least / out.time_step;

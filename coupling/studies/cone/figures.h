@@ -5,7 +5,7 @@
 
 #include "coupling/averaging/cone.h"
 #include "coupling/heap/cone_windows.h"
-#include "coupling/output/figure.h"
+#include "coupling/result/figure.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

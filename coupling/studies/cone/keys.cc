@@ -2,7 +2,7 @@
 #include "coupling/studies/cone/keys.h"
 
 #include "coupling/case/declare.h"
-#include "coupling/run/superellipsoid_keys.h"
+#include "coupling/run/grain_keys.h"
 #include "coupling/studies/cone/simulation.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::ConeSetup, plan.MEMBER)

@@ -12,6 +12,7 @@
 #include "dem/run/outlook.h"
 #include "dem/run/run.h"
 #include "dem/run/setup.h"
+#include "dem/sleep/sleep_settings.h"
 
 namespace grainfield::dem {
 
@@ -64,7 +65,7 @@ struct ConeSetup {
     r.background_damping = 20;
     return r;
   }();
-  SleepSetup sleep;
+  SleepSettings sleep{.on = true};
 
   auto members() const { return std::tie(plan, material, motion, rest, sleep); }
 };

@@ -1,8 +1,7 @@
-#include "coupling/studies/hard_disks/figures.h"
-
 #include <algorithm>
 
 #include "coupling/studies/hard_disks/keys.h"
+#include "coupling/studies/hard_disks/page.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "coupling/judge/words.h"
+#include "coupling/result/csv.h"
 #include "dem/collisions/gas.h"
 
 namespace grainfield::coupling {
@@ -181,30 +182,26 @@ Table gas_table(const GasResults& results) {
 }
 
 std::string gas_csv(const GasResults& results) {
-  std::string out;
+  Csv out;
   if (results.setup.kind == "pressure") {
-    out =
-        "fraction,compressibility,compressibility_error,theory,virial_series,"
-        "collision_rate_over_enskog,collision_rate_error\n";
+    out.row("fraction", "compressibility", "compressibility_error", "theory", "virial_series",
+            "collision_rate_over_enskog", "collision_rate_error");
     for (const GasState& s : results.states) {
-      out += fmt::format("{},{:.9g},{:.3g},{:.9g},{:.9g},{:.9g},{:.3g}\n", s.fraction,
-                         s.compressibility.mean, s.compressibility.error, s.theory, s.series,
-                         s.rate_over_enskog.mean, s.rate_over_enskog.error);
+      out.row(s.fraction, s.compressibility.mean, s.compressibility.error, s.theory, s.series,
+              s.rate_over_enskog.mean, s.rate_over_enskog.error);
     }
-    return out;
+    return out.text();
   }
-  out =
-      "fraction,time_over_haff,collisions_per_grain,temperature,temperature_error,haff,"
-      "spin_temperature,spin_temperature_error\n";
+  out.row("fraction", "time_over_haff", "collisions_per_grain", "temperature", "temperature_error",
+          "haff", "spin_temperature", "spin_temperature_error");
   for (const GasState& s : results.states) {
     for (std::size_t k = 0; k < s.time.size(); ++k) {
-      out += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.3g},{},{:.9g},{:.3g}\n", s.fraction, s.time[k],
-                         s.collisions[k], s.temperature[k].mean, s.temperature[k].error,
-                         has_haff(results) ? fmt::format("{:.9g}", haff(s.time[k])) : "nan",
-                         s.spin_temperature[k].mean, s.spin_temperature[k].error);
+      out.row(s.fraction, s.time[k], s.collisions[k], s.temperature[k].mean, s.temperature[k].error,
+              has_haff(results) ? haff(s.time[k]) : kNan, s.spin_temperature[k].mean,
+              s.spin_temperature[k].error);
     }
   }
-  return out;
+  return out.text();
 }
 
 double gas_largest_difference(const GasResults& results) {

@@ -5,6 +5,7 @@
 
 #include "coupling/report/picture.h"
 #include "coupling/report/report.h"
+#include "coupling/result/figure.h"
 #include "coupling/studies/hard_disks/simulation.h"
 
 namespace grainfield::coupling {
@@ -45,5 +46,12 @@ std::string gas_subtitle(const dem::HardDisksSetup& setup);
 
 /// Of all fractions (and times) |value over theory - 1| at most; 0 where there is no theory.
 double gas_largest_difference(const GasResults& results);
+
+/// All fractions and realizations of a run.
+struct GasFacts {
+  const GasResults& results;
+  const FigureSamples& figures;  ///< "gas.FRACTION.*", as the simulations left them
+};
+const std::vector<RunFigure<GasFacts>>& gas_rows();
 
 }  // namespace grainfield::coupling

@@ -251,16 +251,12 @@ class HardDisksRun final : public ArchivedRun {
     return out;
   }
   void add_columns(Snapshot& out) const {
-    std::array<std::string, std::size(kCoolingColumns)> texts;
+    NumberTable& table = out.tables["gas"];
+    for (const char* name : kCoolingColumns) table.push_back({name, "1", {}});
     for (const CoolingRecord& r : records_) {
       const double values[] = {r.time, r.temperature, r.spin_temperature, r.collisions};
       static_assert(std::size(values) == std::size(kCoolingColumns));
-      for (std::size_t c = 0; c < texts.size(); ++c) {
-        texts[c] += fmt::format("{}{:.12g}", texts[c].empty() ? "" : " ", values[c]);
-      }
-    }
-    for (std::size_t c = 0; c < texts.size(); ++c) {
-      out.attributes[std::string("gas:") + kCoolingColumns[c]] = texts[c];
+      for (std::size_t c = 0; c < table.size(); ++c) table[c].values.push_back(values[c]);
     }
   }
 

@@ -35,7 +35,7 @@ struct HardDisksSetup {
   bool in_space() const { return shape == "sphere"; }
 };
 
-/// Columns of a cooling gas: attributes "gas:NAME" of each snapshot, numbers between spaces. time:
+/// Columns of a cooling gas: table "gas" of each snapshot, pure numbers. time:
 /// over Haff's; temperature and that of the spins: over the one at the start; collisions: of a
 /// grain.
 inline constexpr const char* kCoolingColumns[] = {"time", "temperature", "spin_temperature",

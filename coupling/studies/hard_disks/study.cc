@@ -11,7 +11,6 @@
 #include "coupling/run/ensemble.h"
 #include "coupling/run/recorded.h"
 #include "coupling/run/study_result.h"
-#include "coupling/studies/hard_disks/figures.h"
 #include "coupling/studies/hard_disks/keys.h"
 #include "coupling/studies/hard_disks/page.h"
 #include "dem/collisions/gas.h"

@@ -203,8 +203,7 @@ class HardToSoftRun final : public ArchivedRun {
     out.attributes["state"] = state;
     out.attributes["seed"] = fmt::format("{}", seed_);
     out.attributes["packing"] = "rain";
-    out.attributes["switch:soft_grains"] =
-        fmt::format("{:d}", fmt::join(soft.begin(), soft.end(), " "));
+    out.tables["soft"] = {{"grains", "1", {soft.begin(), soft.end()}}};
     keep_columns("switch", kSwitchColumns, records_, out);
     return out;
   }

@@ -42,15 +42,15 @@ struct HardToSoftSetup {
   double width() const;      ///< of the box, m
 };
 
-/// Columns of the curves: attributes "switch:NAME" of the snapshot "pile". time: in sqrt(d/g);
+/// Columns of the curves: table "switch" of the snapshots. time: in sqrt(d/g);
 /// soft: share of the grains; energies in m g d: kinetic, elastic with springs, lost by impulses
 /// and by soft contacts, and what is missing of the balance.
 inline constexpr const char* kSwitchColumns[] = {
     "time", "soft", "kinetic", "elastic", "lost_impulses", "lost_soft", "unbalanced"};
 
 /// Snapshots "soft_25", "soft_50", "soft_75", when that share of the grains, %, was soft for the
-/// first time, and "pile". Attribute "switch:soft_grains": 1 for every soft grain, 0 for a hard
-/// one, between spaces in the order of the grains. Throws std::invalid_argument naming the key.
+/// first time, and "pile". Table "soft": 1 for every soft grain, 0 for a hard
+/// one, in the order of the grains. Throws std::invalid_argument naming the key.
 std::unique_ptr<Run> make_hard_to_soft_run(const HardToSoftSetup& setup, std::uint64_t seed);
 /// The same refusals.
 Outlook foresee_hard_to_soft(const HardToSoftSetup& setup);

@@ -14,9 +14,9 @@ namespace grainfield::coupling {
 namespace {
 
 std::vector<char> soft_ones(const dem::Snapshot& s, const std::string& file) {
-  constexpr const char* kSoft[] = {"soft_grains"};
+  constexpr const char* kSoft[] = {"grains"};
   std::vector<char> out;
-  for (const double value : recorded_columns(s, "switch", kSoft, file).at(kSoft[0])) {
+  for (const double value : recorded_columns(s, "soft", kSoft, file).at(kSoft[0])) {
     out.push_back(value != 0);
   }
   return out;

@@ -1,4 +1,3 @@
-#include "coupling/studies/implicit_settling/figures.h"
 
 #include "coupling/studies/implicit_settling/keys.h"
 

@@ -46,7 +46,7 @@ struct ImplicitSettlingSetup {
   double time_unit() const;  ///< sqrt(d/g), s
 };
 
-/// Columns of the curves: attributes "settling:NAME" of the snapshot, numbers between spaces.
+/// Columns of the curves: table "settling" of the snapshot.
 /// time: in sqrt(d/g); energies in m g d: kinetic, elastic, lost since the start by dashpots along
 /// the normal, by friction, by wells and by BDF2 itself, and what is missing of the balance;
 /// iterations: of Newton's method per solve since the last row; spread: by how much the outermost

@@ -8,10 +8,10 @@
 
 #include "continuum/closed/liffman.h"
 #include "coupling/report/judgement.h"
+#include "coupling/result/csv.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/recorded.h"
 #include "coupling/run/study_result.h"
-#include "coupling/studies/implicit_settling/figures.h"
 #include "coupling/studies/implicit_settling/keys.h"
 #include "coupling/studies/implicit_settling/simulation.h"
 #include "coupling/studies/lattice_pile/keys.h"
@@ -97,12 +97,12 @@ class SettlingAnalysis {
   }
 
   std::string base_csv() const {
-    std::string out = "x_over_width,normal,normal_closed_form,horizontal,horizontal_closed_form\n";
+    Csv out;
+    out.row("x_over_width", "normal", "normal_closed_form", "horizontal", "horizontal_closed_form");
     for (Eigen::Index i = 0; i < x_.size(); ++i) {
-      out += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", x_[i], normal_[i], hard_normal_[i],
-                         horizontal_[i], hard_horizontal_[i]);
+      out.row(x_[i], normal_[i], hard_normal_[i], horizontal_[i], hard_horizontal_[i]);
     }
-    return out;
+    return out.text();
   }
 
   std::vector<Chart> charts() const {

@@ -1,6 +1,5 @@
-#include "coupling/studies/lattice_pile/figures.h"
-
 #include "coupling/studies/lattice_pile/keys.h"
+#include "coupling/studies/lattice_pile/page.h"
 
 namespace grainfield::coupling {
 namespace {

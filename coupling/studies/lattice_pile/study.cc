@@ -9,15 +9,14 @@
 #include <optional>
 
 #include "continuum/closed/liffman.h"
+#include "coupling/models/evaluate_model.h"
 #include "coupling/models/model_record.h"
-#include "coupling/models/models.h"
 #include "coupling/models/subject.h"
 #include "coupling/report/force_lines.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/measured_base.h"
 #include "coupling/run/study_result.h"
-#include "coupling/studies/lattice_pile/figures.h"
 #include "coupling/studies/lattice_pile/keys.h"
 #include "coupling/studies/lattice_pile/page.h"
 #include "coupling/studies/lattice_pile/simulation.h"

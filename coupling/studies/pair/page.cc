@@ -134,7 +134,7 @@ void add_angle_chart(const PairResults& results, std::vector<Chart>& out) {
 void add_loop_chart(const PairResults& results, std::vector<Chart>& out) {
   if (results.loops.empty()) return;
   std::vector<double> work;
-  for (const double share : results.loops.at("loop_work_over_energy")) {
+  for (const double share : results.loops.at("work_over_energy")) {
     work.push_back(std::log10(std::max(std::fabs(share), kNoWork)));
   }
   std::sort(work.begin(), work.end());

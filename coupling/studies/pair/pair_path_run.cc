@@ -47,12 +47,12 @@ class PathRun final : public PairRun {
   RunResult result() const override {
     RunResult out = result_of(*first_bodies_, now_.steps);
     if (setup_.path != "random") return out;
+    NumberTable& table = out.snapshots.front().second.tables["loops"];
     for (std::size_t c = 0; c < std::size(kLoopColumns); ++c) {
-      std::string text;
+      table.push_back({kLoopColumns[c].name, kLoopColumns[c].unit, {}});
       for (std::size_t k = c; k < done_loops_.size(); k += std::size(kLoopColumns)) {
-        text += fmt::format("{}{:.6g}", text.empty() ? "" : " ", done_loops_[k]);
+        table.back().values.push_back(done_loops_[k]);
       }
-      out.snapshots.front().second.attributes[std::string("pair:") + kLoopColumns[c]] = text;
     }
     return out;
   }

@@ -102,12 +102,10 @@ std::vector<std::pair<std::string, Snapshot>> snapshots_of(const PairRecords& re
     out.emplace_back(fmt::format("state_{:02}", out.size()),
                      snapshot_of(all[k], like, bodies.settings.friction));
   }
+  NumberTable& table = out.front().second.tables["pair"];
   for (std::size_t c = 0; c < std::size(kPairColumns); ++c) {
-    std::string text;
-    for (const PairRecord& r : all) {
-      text += fmt::format("{}{:.9g}", text.empty() ? "" : " ", column(r, c, like.dim == 3));
-    }
-    out.front().second.attributes[std::string("pair:") + kPairColumns[c]] = text;
+    table.push_back({kPairColumns[c].name, kPairColumns[c].unit, {}});
+    for (const PairRecord& r : all) table.back().values.push_back(column(r, c, like.dim == 3));
   }
   return out;
 }

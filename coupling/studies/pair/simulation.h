@@ -61,26 +61,31 @@ struct PairSetup {
   bool in_space() const { return shape == "sphere"; }
 };
 
-/// Columns of the profile: attributes "pair:NAME" of the first snapshot, numbers between spaces.
-/// x, y, angle: place of the first body, m, and its turning about z, rad.
-inline constexpr const char* kPairColumns[] = {"time",
-                                               "depth",
-                                               "area",
-                                               "normal_force",
-                                               "tangential_force",
-                                               "torque_first",
-                                               "torque_second",
-                                               "kinetic",
-                                               "stored",
-                                               "dissipated",
-                                               "x",
-                                               "y",
-                                               "angle"};
+/// A column of a table that the run leaves, with its unit.
+struct PairColumn {
+  const char *name, *unit;
+};
 
-/// Of every path of path = "random", likewise: its work over the largest energy stored on it, that
-/// energy (J), and how often the outlines crossed at most.
-inline constexpr const char* kLoopColumns[] = {"loop_work_over_energy", "loop_stored_most",
-                                               "loop_crossings"};
+/// Columns of the profile: table "pair" of the first snapshot. x, y, angle: place of the first
+/// body and its turning about z.
+inline constexpr PairColumn kPairColumns[] = {{"time", "s"},
+                                              {"depth", "m"},
+                                              {"area", "m2"},
+                                              {"normal_force", "N"},
+                                              {"tangential_force", "N"},
+                                              {"torque_first", "Nm"},
+                                              {"torque_second", "Nm"},
+                                              {"kinetic", "J"},
+                                              {"stored", "J"},
+                                              {"dissipated", "J"},
+                                              {"x", "m"},
+                                              {"y", "m"},
+                                              {"angle", "rad"}};
+
+/// For every path of path = "random", table "loops" of the first snapshot: its work over the
+/// largest energy stored on it, that energy, and how often the outlines crossed at most.
+inline constexpr PairColumn kLoopColumns[] = {
+    {"work_over_energy", "1"}, {"stored_most", "J"}, {"crossings", "1"}};
 
 /// One of the collisions asked for.
 struct PairLaunch {

@@ -7,53 +7,37 @@
 #include <numeric>
 #include <utility>
 
+#include "coupling/result/csv.h"
+
 namespace grainfield::coupling {
 namespace {
 
-using NamedUnits = std::vector<std::pair<const char*, const char*>>;  // column, with its unit
+using dem::PairColumn;
 
-const NamedUnits& profile_units() {
-  static const NamedUnits all{{"time", "time_s"},
-                              {"depth", "depth_m"},
-                              {"area", "area_m2"},
-                              {"normal_force", "normal_force_N"},
-                              {"tangential_force", "tangential_force_N"},
-                              {"torque_first", "torque_first_Nm"},
-                              {"torque_second", "torque_second_Nm"},
-                              {"kinetic", "kinetic_J"},
-                              {"stored", "stored_J"},
-                              {"dissipated", "dissipated_J"},
-                              {"x", "x_m"},
-                              {"y", "y_m"},
-                              {"angle", "angle_rad"}};
-  return all;
+std::vector<const char*> names_of(std::span<const PairColumn> columns) {
+  std::vector<const char*> out;
+  for (const PairColumn& column : columns) out.push_back(column.name);
+  return out;
 }
 
-const NamedUnits& loop_units() {
-  static const NamedUnits all{{"loop_work_over_energy", "work_over_energy"},
-                              {"loop_stored_most", "stored_most_J"},
-                              {"loop_crossings", "crossings"}};
-  return all;
-}
-
-std::string cell(double value) { return std::isnan(value) ? "nan" : fmt::format("{:.9g}", value); }
-
-std::string columns_csv(const std::vector<RecordedColumns>& realizations, const NamedUnits& units,
-                        const char* index) {
-  std::string out = "realization";
-  if (*index != 0) out += fmt::format(",{}", index);
-  for (const auto& [column, unit] : units) out += fmt::format(",{}", unit);
-  out += "\n";
+// `index`: heading of the row's number in its realization; empty: it is left out.
+std::string columns_csv(const std::vector<RecordedColumns>& realizations,
+                        std::span<const PairColumn> columns, const std::string& index) {
+  Csv out;
+  out.add("realization");
+  if (!index.empty()) out.add(index);
+  for (const PairColumn& column : columns) out.add(csv_heading(column.name, column.unit));
+  out.end_row();
   for (std::size_t r = 0; r < realizations.size(); ++r) {
-    const std::size_t rows = realizations[r].at(units.front().first).size();
+    const std::size_t rows = realizations[r].at(columns.front().name).size();
     for (std::size_t k = 0; k < rows; ++k) {
-      out += *index != 0 ? fmt::format("{},{}", r, k) : fmt::format("{}", r);
-      for (const auto& [column, unit] : units)
-        out += fmt::format(",{}", cell(realizations[r].at(column)[k]));
-      out += "\n";
+      out.add(r);
+      if (!index.empty()) out.add(k);
+      for (const PairColumn& column : columns) out.add(realizations[r].at(column.name)[k]);
+      out.end_row();
     }
   }
-  return out;
+  return out.text();
 }
 
 double mean_of(const std::map<std::string, std::vector<double>>& figures, const std::string& key) {
@@ -66,21 +50,22 @@ double mean_of(const std::map<std::string, std::vector<double>>& figures, const 
 }  // namespace
 
 RecordedColumns pair_profile(const Realization& realization, const std::string& file) {
-  return recorded_columns(realization.snapshots.front().second, "pair", dem::kPairColumns, file);
+  return recorded_columns(realization.snapshots.front().second, "pair", names_of(dem::kPairColumns),
+                          file);
 }
 
 RecordedColumns pair_loops(const Realization& realization, const std::string& file) {
   const dem::Snapshot& state = realization.snapshots.front().second;
-  if (!state.attributes.contains(std::string("pair:") + dem::kLoopColumns[0])) return {};
-  return recorded_columns(state, "pair", dem::kLoopColumns, file);
+  if (!state.tables.contains("loops")) return {};
+  return recorded_columns(state, "loops", names_of(dem::kLoopColumns), file);
 }
 
 std::string pair_profiles_csv(const std::vector<RecordedColumns>& realizations) {
-  return columns_csv(realizations, profile_units(), "");
+  return columns_csv(realizations, dem::kPairColumns, "");
 }
 
 std::string pair_loops_csv(const std::vector<RecordedColumns>& realizations) {
-  return columns_csv(realizations, loop_units(), "loop");
+  return columns_csv(realizations, dem::kLoopColumns, "loop");
 }
 
 std::vector<PairImpact> pair_impacts(const dem::PairSetup& setup,
@@ -108,22 +93,18 @@ std::vector<PairImpact> pair_impacts(const dem::PairSetup& setup,
 }
 
 std::string pair_impacts_csv(const std::vector<PairImpact>& impacts) {
-  std::string out =
-      "speed_m_per_s,angle_deg,restitution_normal,restitution_tangential,duration_s,max_depth_m,"
-      "max_force_N,energy_lost,parted,closed_form_restitution_normal,"
-      "closed_form_restitution_tangential,closed_form_duration_s,closed_form_max_depth_m,"
-      "closed_form_max_force_N\n";
+  Csv out;
+  out.row("speed_m_per_s", "angle_deg", "restitution_normal", "restitution_tangential",
+          "duration_s", "max_depth_m", "max_force_N", "energy_lost", "parted",
+          "closed_form_restitution_normal", "closed_form_restitution_tangential",
+          "closed_form_duration_s", "closed_form_max_depth_m", "closed_form_max_force_N");
   for (const PairImpact& i : impacts) {
-    std::vector<std::string> cells;
-    for (const double value : {i.speed, i.angle, i.restitution_normal, i.restitution_tangential,
-                               i.duration, i.max_depth, i.max_force, i.energy_lost, i.parted,
-                               i.closed.restitution_normal, i.closed.restitution_tangential,
-                               i.closed.duration, i.closed.max_depth, i.closed.max_force}) {
-      cells.push_back(cell(value));
-    }
-    out += fmt::format("{}\n", fmt::join(cells, ","));
+    out.row(i.speed, i.angle, i.restitution_normal, i.restitution_tangential, i.duration,
+            i.max_depth, i.max_force, i.energy_lost, i.parted, i.closed.restitution_normal,
+            i.closed.restitution_tangential, i.closed.duration, i.closed.max_depth,
+            i.closed.max_force);
   }
-  return out;
+  return out.text();
 }
 
 }  // namespace grainfield::coupling

@@ -10,7 +10,6 @@
 #include "coupling/fit/heap_result.h"
 #include "coupling/heap/scaled.h"
 #include "coupling/heap/setup.h"
-#include "coupling/observe/lines.h"
 #include "coupling/observe/seen_models.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/measured_base.h"
@@ -34,6 +33,7 @@ class PileAnalysis {
     add_figures(out.summary, piles_.figures);
     add_fields(out);
     compare_models(out);
+    add_values(source_rows(), value_, out.summary);
     add_values(piles_rows(), {value_, piles_.figures}, out.summary);
     add_values(base_rows(), base_facts(), out.summary);
     const Dip dip = judge_dip(piles_.windows);
@@ -45,8 +45,8 @@ class PileAnalysis {
     }
     const std::string averaged = describe(piles_.methods.front().options);
     const std::shared_ptr<const FittedPiles> fitted = fit_models(out);
-    out.page = [averaged, beside, fitted, flat = flat_piles()](const StudyResult& result,
-                                                               const Realization* first) {
+    out.page = [averaged, beside, fitted, flat = flat_piles_note()](const StudyResult& result,
+                                                                    const Realization* first) {
       return pile_page(result, first, {averaged, flat, beside, fitted.get()});
     };
     return out;
@@ -164,10 +164,10 @@ class PileAnalysis {
   }
 
   // What is said of each pile that is no heap.
-  std::vector<std::string> no_heaps() const {
+  std::vector<std::string> reasons_not_heaps() const {
     std::vector<std::string> out;
     for (std::size_t r = 0; r < piles_.frames.size(); ++r) {
-      std::string why = piles_.frames[r].no_heap(r);
+      std::string why = piles_.frames[r].why_not_a_heap(r);
       if (!why.empty()) out.push_back(std::move(why));
     }
     return out;
@@ -176,7 +176,7 @@ class PileAnalysis {
   void add_dip(StudyResult& out, const Dip& dip) const {
     add_values(dip_rows(), dip, out.summary);
     Judgement& judgement = out.comparison.judgement;
-    if (const auto none = no_heaps(); !none.empty()) {
+    if (const auto none = reasons_not_heaps(); !none.empty()) {
       const std::string count = fmt::format("in {} of {} piles", none.size(), files_.size());
       out.warnings.push_back(fmt::format(
           "no heap formed {}: {}{}; apex, slopes and shoulders mean little there; more grains, or "
@@ -211,7 +211,7 @@ class PileAnalysis {
   }
 
   // "no line fits a flank of 2 of 3 piles"; empty: of all piles both slopes are known.
-  std::string flat_piles() const {
+  std::string flat_piles_note() const {
     std::size_t flat = 0;
     for (const PileFrame& f : piles_.frames) {
       flat += std::isnan(f.repose_left_deg + f.repose_right_deg) ? 1U : 0U;

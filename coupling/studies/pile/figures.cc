@@ -119,16 +119,22 @@ const std::vector<Figure<ChangeFacts>>& change_rows() {
   return all;
 }
 
+const std::vector<RunFigure<Case>>& source_rows() {
+  static const std::vector<RunFigure<Case>> all{
+      {"source.kind", "text", "point | line",
+       [](const Case& value) { return value.get<dem::PileSetup>().source.kind; }},
+      {"source.interval", "s", "point source: from one grain to the next",
+       [](const Case& value) -> Value {
+         const auto& source = value.get<dem::PileSetup>().source;
+         return source.kind == "point" ? Value(source.interval) : std::nullopt;
+       }},
+  };
+  return all;
+}
+
 const std::vector<RunFigure<PilesFacts>>& piles_rows() {
   using F = const PilesFacts&;
   static const std::vector<RunFigure<PilesFacts>> all{
-      {"source.kind", "text", "point | line",
-       [](F f) { return f.value.get<dem::PileSetup>().source.kind; }},
-      {"source.interval", "s", "point source: from one grain to the next",
-       [](F f) -> Value {
-         const auto& source = f.value.get<dem::PileSetup>().source;
-         return source.kind == "point" ? Value(source.interval) : std::nullopt;
-       }},
       {"sleep.wake_reach", "-", "as in the case, when grains sleep while the pile is poured",
        [](F f) -> Value {
          const auto& sleep = f.value.get<dem::PileSetup>().sleep;
@@ -184,13 +190,9 @@ const std::vector<RunFigure<Dip>>& dip_rows() {
 }
 
 std::vector<SummaryKey> pile_figures() {
-  std::vector<SummaryKey> out;
-  for (const auto& part :
-       {declared(pile_rows()), declared(piles_rows()), declared(base_rows()),
-        declared(window_rows()), declared(dip_rows()), declared(change_rows(), "change.*.")}) {
-    out.insert(out.end(), part.begin(), part.end());
-  }
-  return out;
+  return joined({declared(pile_rows()), declared(source_rows()), declared(piles_rows()),
+                 declared(base_rows()), declared(window_rows()), declared(dip_rows()),
+                 declared(change_rows(), "change.*.")});
 }
 
 }  // namespace grainfield::coupling

@@ -6,7 +6,7 @@
 #include "coupling/heap/dip.h"
 #include "coupling/heap/pile_frame.h"
 #include "coupling/heap/setup.h"
-#include "coupling/output/figure.h"
+#include "coupling/result/figure.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -29,6 +29,9 @@ struct ChangeFacts {
   double difference = 0, difference_before = 0;  ///< shoulder - centre, own rho g h
 };
 const std::vector<Figure<ChangeFacts>>& change_rows();
+
+/// How the piles of a case are poured.
+const std::vector<RunFigure<Case>>& source_rows();
 
 /// A whole run of piles.
 struct PilesFacts {

@@ -59,7 +59,7 @@ PileEnsemble::PileEnsemble(const Case& a_case, const std::vector<std::string>& r
     const double feet = kReach * std::max(f.half_left, f.half_right);
     const double own = std::min(feet, kMostReach * f.middle_reach) / f.height;
     reach_of_all = std::max(reach_of_all, own);
-    if (f.no_heap(0).empty()) reach = std::max(reach, own);
+    if (f.why_not_a_heap(0).empty()) reach = std::max(reach, own);
   }
   if (reach == 0) reach = reach_of_all;
   // An odd number of points, so that one is under the apex.

@@ -47,7 +47,7 @@ PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
   }
   settings_.shape = (setup_.shape.kind != "disk" || setup_.source.opening > 0) ? ShapeKind::polygon
                                                                                : ShapeKind::disk;
-  settings_.sleep = sleep_settings(setup_.sleep);
+  settings_.sleep = setup_.sleep;
   engine_ = empty_engine();
   add_floor_grains();
   for (const NewGrain& plate : funnel_plates(setup_.source, setup_.material.density)) {

@@ -14,6 +14,7 @@
 #include "dem/run/outlook.h"
 #include "dem/run/run.h"
 #include "dem/run/setup.h"
+#include "dem/sleep/sleep_settings.h"
 
 namespace grainfield::dem {
 
@@ -51,7 +52,7 @@ struct PileSetup {
   }();
   MotionSetup motion;
   RestSetup rest;
-  SleepSetup sleep;
+  SleepSettings sleep{.on = true};
   ChangeSetup change;
 
   auto members() const {

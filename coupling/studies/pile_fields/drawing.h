@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/field.h"
+#include "coupling/base/field.h"
 #include "coupling/report/picture.h"
 #include "coupling/studies/pile_fields/pile_set.h"
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "coupling/elastic_constants/elastic_map.h"
 #include "coupling/elastic_constants/symmetry.h"
@@ -14,7 +15,6 @@
 #include "coupling/studies/pile_fields/drawing.h"
 #include "coupling/studies/pile_fields/robust.h"
 #include "coupling/studies/pile_fields/topic.h"
-#include "coupling/studies/pile_fields/topic_result.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -46,6 +46,98 @@ struct Fits {
   std::vector<int> rearranged;                                 // piles
   std::array<std::vector<Eigen::VectorXd>, kConstants> local;  // constant, pile: per grid point
 };
+
+// The fits of every pile.
+struct ElasticFacts {
+  const Fits& fits;
+  double of_grain = 0;  // the grains' own stiffness, N/m
+
+  std::vector<double> constant(std::size_t q, double unit = 1) const {
+    std::vector<double> out;
+    for (const Four& c : fits.constants) out.push_back(c[q] / unit);
+    return out;
+  }
+};
+const std::vector<MedianFigure<ElasticFacts>>& constant_rows() {
+  using E = const ElasticFacts&;
+  static const std::vector<MedianFigure<ElasticFacts>> rows{
+      {"elastic.bulk", "N/m", "K of the plane, one fit a pile; median over piles",
+       [](E e) { return e.constant(kBulk); }},
+      {"elastic.shear", "N/m", "G likewise", [](E e) { return e.constant(kShear); }},
+      {"elastic.young", "N/m", "E = 3 G - G^2/K likewise", [](E e) { return e.constant(kYoung); },
+       "E (N/m)"},
+      {"elastic.poisson", "-", "nu likewise", [](E e) { return e.constant(kPoisson); }},
+      {"elastic.young_over_grain", "-", "E over the grains' stiffness (material)",
+       [](E e) { return e.constant(kYoung, e.of_grain); }},
+      {"elastic.bulk_share", "-", "share of the change of pressure that K explains; median",
+       [](E e) { return e.fits.bulk_share; }},
+      {"elastic.shear_share", "-", "share of the change of shear that G explains; median",
+       [](E e) { return e.fits.shear_share; }},
+  };
+  return rows;
+}
+const std::vector<RunFigure<ElasticFacts>>& rearranged_rows() {
+  using E = const ElasticFacts&;
+  static const std::vector<RunFigure<ElasticFacts>> rows{
+      {"elastic.rearranged", "-", "piles whose strain stands out: grains rearranged",
+       [](E e) { return static_cast<std::int64_t>(e.fits.rearranged.size()); }},
+      {"elastic.rearranged_piles", "text", "their numbers, from 0",
+       [](E e) {
+         return e.fits.rearranged.empty() ? "none"
+                                          : fmt::format("{}", fmt::join(e.fits.rearranged, ", "));
+       }},
+  };
+  return rows;
+}
+
+// E of all points in one fit, of all piles and of those in which no grains rearranged.
+struct PooledYoung {
+  std::optional<Constant> all, kept;
+};
+std::optional<ValueWithError> with_its_error(const std::optional<Constant>& c) {
+  return c ? std::optional(ValueWithError{c->value, c->error}) : std::nullopt;
+}
+const std::vector<ErrorFigure<PooledYoung>>& pooled_rows() {
+  using P = const PooledYoung&;
+  static const std::vector<ErrorFigure<PooledYoung>> rows{
+      {"elastic.young_pooled", "N/m", "E from the points of all piles in one fit",
+       [](P p) { return with_its_error(p.all); }},
+      {"elastic.young_pooled_kept", "N/m", "the same without the rearranged piles",
+       [](P p) { return with_its_error(p.kept); }},
+  };
+  return rows;
+}
+
+std::string isotropy_word(const SymmetryFit& s) {
+  return std::isnan(s.p_realizations) ? "undecided" : s.isotropy_holds() ? "holds" : "rejected";
+}
+const std::vector<ErrorFigure<SymmetryFit>>& symmetry_rows() {
+  using S = const SymmetryFit&;
+  static const std::vector<ErrorFigure<SymmetryFit>> rows{
+      {"elastic.normal_ratio", "-", "C11/C22 of the orthotropic fit: 1 if isotropic",
+       [](S s) { return with_its_error(s.normal_ratio); }},
+      {"elastic.shear_ratio", "-", "4 C66/(C11 + C22 - 2 C12): 1 if isotropic",
+       [](S s) { return with_its_error(s.shear_ratio); }},
+      {"elastic.isotropy_p", "-", "probability of such ratios if isotropy holds; nan below 4 piles",
+       [](S s) { return ValueWithError{s.p_realizations}; }},
+      {"elastic.isotropy", "text", "holds | rejected (at 5 %) | undecided",
+       [](S s) { return ValueWithError{isotropy_word(s)}; }},
+      {"elastic.residual_isotropic", "-", "stress that the isotropic fit leaves, relative",
+       [](S s) { return ValueWithError{s.residual_isotropic}; }},
+      {"elastic.residual_orthotropic", "-", "stress that the orthotropic fit leaves, relative",
+       [](S s) { return ValueWithError{s.residual_orthotropic}; }},
+  };
+  return rows;
+}
+
+const std::vector<ErrorFigure<ValueWithError>>& fabric_rows() {
+  static const std::vector<ErrorFigure<ValueWithError>> rows{
+      {"_fabric_correlation", "-",
+       "correlation of a constant with tr F over the points inside (medians, means over piles)",
+       [](const ValueWithError& r) { return r; }},
+  };
+  return rows;
+}
 
 ElasticOptions few_draws() {
   ElasticOptions out;
@@ -204,9 +296,9 @@ Picture against_fabric(const PileSet& piles, const Fits& fits, Summary& summary)
           return Eigen::VectorXd::Constant(1, pearson(x, y));
         },
         options);
-    const std::string key = fmt::format("elastic.{}_fabric_correlation", kNames[q]);
-    summary[key] = r[0].value;
-    if (piles.count() > 1) summary[key + ".standard_error"] = r[0].error;
+    ValueWithError found{r[0].value};
+    if (piles.count() > 1) found.error = r[0].error;
+    add_values(fabric_rows(), found, summary, fmt::format("elastic.{}", kNames[q]));
     std::vector<double> x, y;
     maps_of(everyone, q, x, y);
     frames.push_back({fmt::format("{}: r = {:.2f}", kLabels[q], r[0].value),
@@ -226,20 +318,11 @@ void add_symmetry(const Fits& fits, Summary& summary, Table& table, int resample
   const Increments kept = pooled(fits, false);
   if (kept.realizations() == 0) return;
   const SymmetryFit s = fit_symmetry(kept, fits.whole, options);
-  summary["elastic.normal_ratio"] = s.normal_ratio.value;
-  summary["elastic.normal_ratio.standard_error"] = s.normal_ratio.error;
-  summary["elastic.shear_ratio"] = s.shear_ratio.value;
-  summary["elastic.shear_ratio.standard_error"] = s.shear_ratio.error;
-  summary["elastic.isotropy_p"] = s.p_realizations;
-  summary["elastic.residual_isotropic"] = s.residual_isotropic;
-  summary["elastic.residual_orthotropic"] = s.residual_orthotropic;
-  const std::string verdict =
-      std::isnan(s.p_realizations) ? "undecided" : (s.isotropy_holds() ? "holds" : "rejected");
-  summary["elastic.isotropy"] = verdict;
+  add_values(symmetry_rows(), s, summary);
   table.rows.push_back({"isotropy (without rearranged piles)",
                         std::isnan(s.p_realizations)
                             ? "undecided: needs 4 piles"
-                            : fmt::format("{} (p = {:.2g})", verdict, s.p_realizations)});
+                            : fmt::format("{} (p = {:.2g})", isotropy_word(s), s.p_realizations)});
   table.rows.push_back(
       {"C11/C22 (1 if isotropic)", with_error(s.normal_ratio.value, s.normal_ratio.error)});
   table.rows.push_back({"4 C66/(C11 + C22 - 2 C12) (1 if isotropic)",
@@ -250,7 +333,7 @@ void add_symmetry(const Fits& fits, Summary& summary, Table& table, int resample
   if (!s.note.empty()) table.rows.push_back({"note", s.note});
 }
 
-Table piles_table(const PileSet& piles, const Fits& fits) {
+Table piles_table(const Fits& fits) {
   Table out{
       "Constants of every pile",
       fmt::format("One least-squares fit over the points inside. Share: of the stress that it "
@@ -273,11 +356,8 @@ Table piles_table(const PileSet& piles, const Fits& fits) {
              : fmt::format("{:.1f} %", 100 * fits.rearranged_share[r]),
          odd ? "rearranged" : ""});
   }
-  (void)piles;
   return out;
 }
-
-}  // namespace
 
 TopicResult elastic_constants_of_piles(const PileSet& piles) {
   Fits fits = fit(piles);
@@ -286,29 +366,18 @@ TopicResult elastic_constants_of_piles(const PileSet& piles) {
   Summary& s = out.summary;
   const dem::MaterialSetup& m = piles.setup().get<dem::PileSetup>().material;
   const double of_grain = m.law == "linear" ? m.normal_stiffness : m.young;
-  for (std::size_t q = 0; q < kConstants; ++q) {
-    std::vector<double> values;
-    for (const Four& c : fits.constants) values.push_back(c[q]);
-    add_median(s, fmt::format("elastic.{}", kNames[q]), values, piles.resamples());
-    if (q != kYoung) continue;
-    for (double& v : values) v /= of_grain;
-    add_median(s, "elastic.young_over_grain", values, piles.resamples());
-  }
-  add_median(s, "elastic.bulk_share", fits.bulk_share, piles.resamples());
-  add_median(s, "elastic.shear_share", fits.shear_share, piles.resamples());
-  s["elastic.rearranged"] = static_cast<std::int64_t>(fits.rearranged.size());
-  s["elastic.rearranged_piles"] =
-      fits.rearranged.empty() ? "none" : fmt::format("{}", fmt::join(fits.rearranged, ", "));
+  const ElasticFacts facts{fits, of_grain};
+  add_medians(constant_rows(), facts, piles.resamples(), s);
+  add_values(rearranged_rows(), facts, s);
   ElasticOptions options;
   options.bootstrap.resamples = piles.resamples();
+  PooledYoung young;
   for (const bool all : {true, false}) {
     const Increments samples = pooled(fits, all);
     if (samples.realizations() == 0) continue;
-    const Constant e = isotropic_constants(samples, fits.whole, options).young;
-    const std::string key = all ? "elastic.young_pooled" : "elastic.young_pooled_kept";
-    s[key] = e.value;
-    s[key + ".standard_error"] = e.error;
+    (all ? young.all : young.kept) = isotropic_constants(samples, fits.whole, options).young;
   }
+  add_values(pooled_rows(), young, s);
 
   const Field constants = constants_map(piles, fits);
   const auto value = [&](const char* key) { return std::get<double>(s.at(key)); };
@@ -356,20 +425,32 @@ TopicResult elastic_constants_of_piles(const PileSet& piles) {
     out.sections.emplace_back(std::move(along));
   }
   out.sections.emplace_back(against_fabric(piles, fits, s));
-  Table figures{"Elasticity of the heap", "", {}, {}};
-  add_symmetry(fits, s, figures, piles.resamples());
-  for (const char* key : {"elastic.young_pooled", "elastic.young_pooled_kept"}) {
-    if (s.count(key) == 0) continue;
-    figures.rows.push_back({std::string(key) == "elastic.young_pooled"
-                                ? "E, all piles pooled (N/m)"
-                                : "E, pooled without rearranged piles (N/m)",
-                            with_error(value(key), error(key))});
+  Table symmetry{"Elasticity of the heap", "", {}, {}};
+  add_symmetry(fits, s, symmetry, piles.resamples());
+  if (young.all) {
+    symmetry.rows.push_back(
+        {"E, all piles pooled (N/m)", with_error(young.all->value, young.all->error)});
   }
-  out.sections.emplace_back(std::move(figures));
-  out.sections.emplace_back(piles_table(piles, fits));
+  if (young.kept) {
+    symmetry.rows.push_back({"E, pooled without rearranged piles (N/m)",
+                             with_error(young.kept->value, young.kept->error)});
+  }
+  out.sections.emplace_back(std::move(symmetry));
+  out.sections.emplace_back(piles_table(fits));
   out.texts.emplace_back("elastic_map.csv", elastic_map_text(constants));
   out.fields.emplace_back("elastic_constants", constants);
   return out;
+}
+
+std::vector<SummaryKey> elastic_figures() {
+  return joined({declared(constant_rows()), declared(rearranged_rows()), declared(pooled_rows()),
+                 declared(symmetry_rows()), declared(fabric_rows(), "elastic.*")});
+}
+
+}  // namespace
+
+Topic elastic_topic() {
+  return {"elastic", "K, G, E and nu over the heap", elastic_constants_of_piles, elastic_figures};
 }
 
 }  // namespace grainfield::coupling

@@ -19,7 +19,6 @@
 #include "coupling/studies/pile_fields/drawing.h"
 #include "coupling/studies/pile_fields/robust.h"
 #include "coupling/studies/pile_fields/topic.h"
-#include "coupling/studies/pile_fields/topic_result.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -88,13 +87,26 @@ double mean_axis(const std::vector<double>& degrees) {
   return std::abs(sum) > 0 ? std::arg(sum) / 2 * kDegrees : NAN;
 }
 
-constexpr std::array kFigures{"fabric.angle_to_stress_deg",     "fabric.angle_to_strain_deg",
-                              "fabric.angle_stress_strain_deg", "fabric.anisotropy",
-                              "fabric.anisotropy_centre",       "fabric.anisotropy_flanks",
-                              "fabric.axis_left_deg",           "fabric.axis_right_deg"};
+// Of the mean tensors on the points inside, in the order of axis_rows().
+using AxisFigures = std::vector<ValueWithError>;
+const std::vector<ErrorFigure<AxisFigures>>& axis_rows() {
+  const auto number = [](std::size_t k) { return [k](const AxisFigures& all) { return all[k]; }; };
+  static const std::vector<ErrorFigure<AxisFigures>> rows{
+      {"fabric.angle_to_stress_deg", "deg",
+       "between the major axes of fabric and stress; median over the points inside", number(0)},
+      {"fabric.angle_to_strain_deg", "deg", "the same of fabric and strain", number(1)},
+      {"fabric.angle_stress_strain_deg", "deg", "the same of stress and strain", number(2)},
+      {"fabric.anisotropy", "-", "F_D / tr F; median over the points inside", number(3)},
+      {"fabric.anisotropy_centre", "-", "the same within 0.4 half bases of the apex", number(4)},
+      {"fabric.anisotropy_flanks", "-", "the same beyond", number(5)},
+      {"fabric.axis_left_deg", "deg",
+       "fabric's major axis from x, mean beyond 0.4 half bases on the left", number(6)},
+      {"fabric.axis_right_deg", "deg", "the same on the right", number(7)},
+  };
+  return rows;
+}
 
-// The figures in that order, from mean tensors on the points inside.
-Eigen::VectorXd figures_of(const PileSet& piles, const PileTensors& t) {
+Eigen::VectorXd axis_figures(const PileSet& piles, const PileTensors& t) {
   std::array<std::vector<double>, 8> v;
   const double half = (piles.mean(&PileFrame::half_left) + piles.mean(&PileFrame::half_right)) /
                       (2 * piles.height());
@@ -165,45 +177,95 @@ Eigen::VectorXd vector_of(const std::vector<double>& v) {
   return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
 
+// tr F against nu c and against nu.
+struct Laws {
+  Correlation product, density;
+  double trace_over_product = NAN;
+  bool have_errors = false;
+
+  ValueWithError correlation_of(const Correlation& c) const {
+    return {c.r, have_errors ? std::optional(c.interval.error) : std::nullopt};
+  }
+};
+const std::vector<ErrorFigure<Laws>>& law_rows() {
+  using L = const Laws&;
+  static const std::vector<ErrorFigure<Laws>> rows{
+      {"fabric.nu_c_correlation", "-", "of tr F with nu c over the points of all piles",
+       [](L l) { return l.correlation_of(l.product); }},
+      {"fabric.nu_c_slope", "-", "slope of tr F over nu c",
+       [](L l) { return ValueWithError{l.product.slope}; }},
+      {"fabric.trace_over_nu_c", "-", "sum of tr F over sum of nu c, points of all piles",
+       [](L l) { return ValueWithError{l.trace_over_product}; }},
+      {"fabric.nu_correlation", "-", "of tr F with nu over the points of all piles",
+       [](L l) { return l.correlation_of(l.density); }},
+      {"fabric.nu_slope", "-", "slope of tr F over nu",
+       [](L l) { return ValueWithError{l.density.slope}; }},
+  };
+  return rows;
+}
+
 void add_laws(const PileSet& piles, TopicResult& out) {
   const Pairs pairs = pairs_of(piles);
   BootstrapOptions options;
   options.interval = "percentile";
   options.resamples = piles.resamples();
-  const auto law = [&](const std::string& key, const std::vector<double>& x) {
-    const Correlation c = correlation(vector_of(x), vector_of(pairs.trace), pairs.pile, options);
-    out.summary[key + "_correlation"] = c.r;
-    if (piles.count() > 1) out.summary[key + "_correlation.standard_error"] = c.interval.error;
-    out.summary[key + "_slope"] = c.slope;
-    return c;
+  const auto law = [&](const std::vector<double>& x) {
+    return correlation(vector_of(x), vector_of(pairs.trace), pairs.pile, options);
   };
-  const Correlation product = law("fabric.nu_c", pairs.nu_c), density = law("fabric.nu", pairs.nu);
+  Laws laws{law(pairs.nu_c), law(pairs.nu), NAN, piles.count() > 1};
   double trace = 0, nu_c = 0;
   for (std::size_t k = 0; k < pairs.trace.size(); ++k) {
     if (!std::isfinite(pairs.trace[k]) || !std::isfinite(pairs.nu_c[k])) continue;
     trace += pairs.trace[k];
     nu_c += pairs.nu_c[k];
   }
-  out.summary["fabric.trace_over_nu_c"] = trace / nu_c;
+  laws.trace_over_product = trace / nu_c;
+  add_values(law_rows(), laws, out.summary);
   Series line = binned("tr F = ν c", pairs.nu_c, pairs.nu_c, kBins);
   line.simulation = false;
   line.error.resize(0);
   Picture picture =
       curves("Trace of the fabric against ν c and ν", "ν c  |  ν", "tr F",
-             {Frame{fmt::format("tr F against nu c: r = {:.2f}", product.r),
+             {Frame{fmt::format("tr F against nu c: r = {:.2f}", laws.product.r),
                     {binned("points inside, all piles", pairs.nu_c, pairs.trace, kBins), line}},
-              Frame{fmt::format("tr F against nu: r = {:.2f}", density.r),
+              Frame{fmt::format("tr F against nu: r = {:.2f}", laws.density.r),
                     {binned("points inside, all piles", pairs.nu, pairs.trace, kBins)}}});
   picture.caption =
       "In bins of equally many points; band: standard error within the bin (Roul figs 3.21, 3.22).";
   out.sections.emplace_back(std::move(picture));
 }
 
+// A state of a pile: "heap." comes before the keys, of another gravity "change.NAME.".
+const std::vector<Figure<CoordinationCounts>>& count_rows() {
+  using C = const CoordinationCounts&;
+  static const std::vector<Figure<CoordinationCounts>> rows{
+      {"coordination", "-", "contacts of a grain", [](C c) { return c.mean; }},
+      {"coordination_bearing", "-", "contacts of a grain without rattlers",
+       [](C c) { return c.mean_bearing; }},
+      {"rattlers", "-", "share of the grains that bear nothing",
+       [](C c) { return static_cast<double>(c.rattlers) / c.grains; }},
+  };
+  return rows;
+}
+struct ChangedCounts {
+  const CoordinationCounts &changed, &rest;
+};
+const std::vector<Figure<ChangedCounts>>& changed_count_rows() {
+  using C = const ChangedCounts&;
+  static const std::vector<Figure<ChangedCounts>> rows{
+      {"coordination_ratio", "-", "coordination over that of the pile",
+       [](C c) { return c.changed.mean / c.rest.mean; }},
+      {"coordination_bearing_ratio", "-", "coordination_bearing over that of the pile",
+       [](C c) { return c.changed.mean_bearing / c.rest.mean_bearing; }},
+  };
+  return rows;
+}
+
 // Share of the grains with k contacts, one row per k, one column of piles per state.
 struct Contacts {
-  std::vector<std::string> states;                     // "pile", changes
-  std::vector<Eigen::MatrixXd> share;                  // state: k x piles
-  std::map<std::string, std::vector<double>> figures;  // summary keys, per pile
+  std::vector<std::string> states;     // "pile", changes
+  std::vector<Eigen::MatrixXd> share;  // state: k x piles
+  FigureSamples figures;
 };
 
 Contacts count_contacts(const PileSet& piles) {
@@ -222,16 +284,11 @@ Contacts count_contacts(const PileSet& piles) {
             static_cast<double>(c.with[k]) / c.grains;
       }
       const std::string prefix = s == 0 ? "heap." : "change." + out.states[s] + ".";
-      out.figures[prefix + "coordination"].push_back(c.mean);
-      out.figures[prefix + "coordination_bearing"].push_back(c.mean_bearing);
-      out.figures[prefix + "rattlers"].push_back(static_cast<double>(c.rattlers) / c.grains);
-      if (s == 0) {
+      add_samples(count_rows(), c, out.figures, prefix);
+      if (s == 0)
         rest = c;
-      } else {
-        out.figures[prefix + "coordination_ratio"].push_back(c.mean / rest.mean);
-        out.figures[prefix + "coordination_bearing_ratio"].push_back(c.mean_bearing /
-                                                                     rest.mean_bearing);
-      }
+      else
+        add_samples(changed_count_rows(), {c, rest}, out.figures, prefix);
     }
   }
   return out;
@@ -286,28 +343,57 @@ void add_contacts(const PileSet& piles, TopicResult& out) {
   out.fields.emplace_back("coordination", std::move(field));
 }
 
+// The grains of one pile.
+struct PileGrains {
+  GrainAxes axes;
+  SizeFactor size;
+};
+const std::vector<Figure<PileGrains>>& grain_rows() {
+  using G = const PileGrains&;
+  static const std::vector<Figure<PileGrains>> rows{
+      {"orientation.order", "-", "nematic order of the grains' long axes",
+       [](G g) { return g.axes.order; }},
+      {"fabric.g2", "-", "tr F/(nu c) of all grains of a pile", [](G g) { return g.size.measured; },
+       "g2"},
+      {"fabric.g2_theory", "-", "g2 by Madadi et al. (2004) from the grains' sizes",
+       [](G g) { return g.size.theory; }},
+  };
+  return rows;
+}
+// Long axes of all piles together.
+struct LongAxes {
+  double random_order = 0;
+  std::complex<double> mean = 0;  // exp(2 i a), weighted by the piles' orders
+};
+const std::vector<RunFigure<LongAxes>>& long_axis_rows() {
+  using L = const LongAxes&;
+  static const std::vector<RunFigure<LongAxes>> rows{
+      {"orientation.random_order", "-", "order of as many random axes",
+       [](L l) { return l.random_order; }},
+      {"orientation.director_deg", "deg", "mean long axis from x",
+       [](L l) { return std::abs(l.mean) > 0 ? std::arg(l.mean) / 2 * kDegrees : NAN; }},
+  };
+  return rows;
+}
+
 // How grains lie: order and director of each pile, and the long axis over the heap.
 void add_orientation(const PileSet& piles, TopicResult& out) {
-  std::map<std::string, std::vector<double>> figures;
-  std::complex<double> mean = 0;
-  double random = 0;
+  FigureSamples figures;
+  LongAxes all;
   for (int r = 0; r < piles.count(); ++r) {
     const Realization one = piles.realization(r);
-    const GrainAxes axes = grain_axes(one["pile"]);
-    figures["orientation.order"].push_back(axes.order);
-    random += std::sqrt(std::numbers::pi / (4.0 * static_cast<double>(axes.elongation.size()))) /
-              piles.count();
+    const PileGrains grains{grain_axes(one["pile"]), size_factor(one["pile"])};
+    add_samples(grain_rows(), grains, figures);
+    const GrainAxes& axes = grains.axes;
+    all.random_order +=
+        std::sqrt(std::numbers::pi / (4.0 * static_cast<double>(axes.elongation.size()))) /
+        piles.count();
     if (std::isfinite(axes.director_deg)) {
-      mean += std::polar(axes.order, 2 * axes.director_deg / kDegrees);
+      all.mean += std::polar(axes.order, 2 * axes.director_deg / kDegrees);
     }
-    const SizeFactor size = size_factor(one["pile"]);
-    figures["fabric.g2"].push_back(size.measured);
-    figures["fabric.g2_theory"].push_back(size.theory);
   }
   add_figures(out.summary, figures);
-  out.summary["orientation.random_order"] = random;
-  out.summary["orientation.director_deg"] =
-      std::abs(mean) > 0 ? std::arg(mean) / 2 * kDegrees : NAN;
+  add_values(long_axis_rows(), all, out.summary);
   Ensemble inertia;
   for (int r = 0; r < piles.count(); ++r) {
     Field one;
@@ -327,7 +413,7 @@ void add_orientation(const PileSet& piles, TopicResult& out) {
   picture.caption = fmt::format(
       "Across the major axis of the averaged inertia tensor; 0: horizontal (Roul figs 3.14, 3.15). "
       "Order of all grains {:.3f}; random grains have about {:.3f}.",
-      std::get<double>(out.summary.at("orientation.order")), random);
+      std::get<double>(out.summary.at("orientation.order")), all.random_order);
   out.sections.emplace_back(std::move(picture));
   out.fields.emplace_back("orientation", std::move(field));
 }
@@ -377,8 +463,6 @@ void add_maps(const PileSet& piles, const Field& mean, const Field& density, Top
   out.sections.emplace_back(std::move(profiles));
 }
 
-}  // namespace
-
 TopicResult fabric_of_piles(const PileSet& piles) {
   TopicResult out;
   const std::vector<PileTensors> all = all_tensors(piles);
@@ -388,16 +472,16 @@ TopicResult fabric_of_piles(const PileSet& piles) {
   options.interval = "percentile";
   options.resamples = std::min(200, piles.resamples());
   options.threads = piles.threads();
-  const auto figures = bootstrap(
+  const auto drawn = bootstrap(
       piles.count(),
-      [&](const std::vector<int>& chosen) { return figures_of(piles, mean_of(all, chosen)); },
+      [&](const std::vector<int>& chosen) { return axis_figures(piles, mean_of(all, chosen)); },
       options);
-  for (std::size_t k = 0; k < kFigures.size(); ++k) {
-    out.summary[kFigures[k]] = figures[k].value;
-    if (piles.count() > 1) {
-      out.summary[std::string(kFigures[k]) + ".standard_error"] = figures[k].error;
-    }
+  AxisFigures axes;
+  for (const auto& figure : drawn) {
+    axes.push_back({figure.value});
+    if (piles.count() > 1) axes.back().error = figure.error;
   }
+  add_values(axis_rows(), axes, out.summary);
   const Field mean = axes_field(piles, mean_of(all, everyone));
   Ensemble densities;
   for (int r = 0; r < piles.count(); ++r) {
@@ -423,6 +507,18 @@ TopicResult fabric_of_piles(const PileSet& piles) {
   out.fields.emplace_back("fabric", mean);
   out.fields.emplace_back("density", std::move(density));
   return out;
+}
+
+std::vector<SummaryKey> fabric_figures() {
+  return joined({declared(count_rows(), "heap."), declared(count_rows(), "change.*."),
+                 declared(changed_count_rows(), "change.*."), declared(axis_rows()),
+                 declared(law_rows()), declared(grain_rows()), declared(long_axis_rows())});
+}
+
+}  // namespace
+
+Topic fabric_topic() {
+  return {"fabric", "fabric, coordination, orientation of grains", fabric_of_piles, fabric_figures};
 }
 
 }  // namespace grainfield::coupling

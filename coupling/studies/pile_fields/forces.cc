@@ -18,7 +18,6 @@
 #include "coupling/studies/pile_fields/drawing.h"
 #include "coupling/studies/pile_fields/robust.h"
 #include "coupling/studies/pile_fields/topic.h"
-#include "coupling/studies/pile_fields/topic_result.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -41,7 +40,7 @@ constexpr double kPerRadian = 180 / std::numbers::pi;
 struct Gathered {
   std::vector<double> base;  // normalised base forces
   dem::Snapshot contacts;    // contacts of all piles between free grains
-  std::map<std::string, std::vector<double>> figures;
+  FigureSamples figures;
 };
 
 // Order 2 |mean exp(2 i a)| of contact normals and its axis, deg; weighted by the normal force or
@@ -61,26 +60,108 @@ std::pair<double, double> order_of(const dem::Snapshot& s, bool by_force) {
   return {2 * std::abs(sum) / weight, std::arg(sum) / 2 * kPerRadian};
 }
 
+// Base forces, contacts and chains of one pile.
+struct PileForces {
+  BaseForces base;
+  ForceChains chains;
+  double contact_order = 0, force_order = 0;
+};
+const std::vector<Figure<PileForces>>& pile_force_rows() {
+  using P = const PileForces&;
+  static const std::vector<Figure<PileForces>> rows{
+      {"forces.base_grains", "-", "grains on the base",
+       [](P p) { return static_cast<double>(p.base.force.size()); }},
+      {"forces.contact_anisotropy", "-", "2 |mean exp(2 i a)| of the contact normals",
+       [](P p) { return p.contact_order; }},
+      {"forces.force_anisotropy", "-", "the same weighted by normal force",
+       [](P p) { return p.force_order; }},
+      {"chains.number", "-", "force chains of a pile (docs/structure.md)",
+       [](P p) { return static_cast<double>(p.chains.chains.size()); }},
+      {"chains.length", "-", "grains of a chain", [](P p) { return p.chains.mean_length; }},
+      {"chains.share", "-", "share of the bearing grains in chains",
+       [](P p) { return static_cast<double>(p.chains.in_chains) / p.chains.bearing; }},
+      {"chains.stressed_share", "-", "share of the bearing grains loaded above the mean",
+       [](P p) { return static_cast<double>(p.chains.stressed) / p.chains.bearing; }},
+  };
+  return rows;
+}
+
+const std::vector<ErrorFigure<ExponentialTail>>& tail_rows() {
+  using T = const ExponentialTail&;
+  static const std::vector<ErrorFigure<ExponentialTail>> rows{
+      {"forces.tail_rate", "-", "of P(n) ~ exp(-rate n) above the mean, all piles together",
+       [](T t) {
+         return ValueWithError{t.rate, t.rate / std::sqrt(t.count)};
+       }},
+      {"forces.tail_grains", "-", "grains above the mean",
+       [](T t) { return ValueWithError{std::int64_t{t.count}}; }},
+      {"forces.tail_distance", "-", "largest difference of the cumulative distributions",
+       [](T t) { return ValueWithError{t.distance}; }},
+      {"forces.tail_p_value", "-", "probability of a larger one if the tail is exponential",
+       [](T t) { return ValueWithError{t.p_value}; }},
+  };
+  return rows;
+}
+
+const std::vector<RunFigure<Gathered>>& gathered_rows() {
+  static const std::vector<RunFigure<Gathered>> rows{
+      {"forces.force_axis_deg", "deg", "axis of force_anisotropy from x, all piles together",
+       [](const Gathered& all) { return order_of(all.contacts, true).second; }},
+  };
+  return rows;
+}
+
+// Mobilised friction of every pile.
+struct Mobilised {
+  double limit_deg = 0;
+  std::vector<double> core, flanks, at_limit;
+};
+const std::vector<RunFigure<Mobilised>>& limit_rows() {
+  static const std::vector<RunFigure<Mobilised>> rows{
+      {"yield.phi_deg", "deg", "angle of repose that the limit is taken at",
+       [](const Mobilised& m) { return m.limit_deg; }},
+  };
+  return rows;
+}
+const std::vector<MedianFigure<Mobilised>>& mobilised_rows() {
+  using M = const Mobilised&;
+  static const std::vector<MedianFigure<Mobilised>> rows{
+      {"yield.mobilised_core_deg", "deg",
+       "mobilised friction within 0.25 half bases of the apex; median over points and piles",
+       [](M m) { return m.core; }},
+      {"yield.mobilised_flanks_deg", "deg", "the same beyond", [](M m) { return m.flanks; }},
+      {"yield.share_at_limit", "-", "share of the points inside that mobilise 95 % of it",
+       [](M m) { return m.at_limit; }},
+  };
+  return rows;
+}
+
+// Traces of the changes of stress over those of strain, in bins.
+const std::vector<RunFigure<Series>>& trace_rows() {
+  static const std::vector<RunFigure<Series>> rows{
+      {"invariants.trace_slope_ratio", "-",
+       "slope of tr stress over tr strain, upper third over lower third of the points: 1 is linear",
+       [](const Series& trace) {
+         const Eigen::Index n = trace.x.size(), third = n / 3;
+         if (third < 1) return double{NAN};
+         const double low = (trace.y[third] - trace.y[0]) / (trace.x[third] - trace.x[0]);
+         const double high =
+             (trace.y[n - 1] - trace.y[n - 1 - third]) / (trace.x[n - 1] - trace.x[n - 1 - third]);
+         return high / low;
+       }},
+  };
+  return rows;
+}
+
 Gathered gather(const PileSet& piles) {
   Gathered out;
-  auto& f = out.figures;
   for (int r = 0; r < piles.count(); ++r) {
     const Realization one = piles.realization(r);
     const dem::Snapshot& pile = one["pile"];
-    const BaseForces base = base_forces(pile);
-    out.base.insert(out.base.end(), base.normalised.begin(), base.normalised.end());
-    f["forces.base_grains"].push_back(static_cast<double>(base.force.size()));
-    const ForceChains chains = force_chains(pile);
-    f["chains.number"].push_back(static_cast<double>(chains.chains.size()));
-    f["chains.length"].push_back(chains.mean_length);
-    f["chains.share"].push_back(static_cast<double>(chains.in_chains) / chains.bearing);
-    f["chains.stressed_share"].push_back(static_cast<double>(chains.stressed) / chains.bearing);
-    const auto [by_count, unused] = order_of(pile, false);
-    const auto [by_force, axis] = order_of(pile, true);
-    f["forces.contact_anisotropy"].push_back(by_count);
-    f["forces.force_anisotropy"].push_back(by_force);
-    (void)unused;
-    (void)axis;
+    const PileForces own{base_forces(pile), force_chains(pile), order_of(pile, false).first,
+                         order_of(pile, true).first};
+    out.base.insert(out.base.end(), own.base.normalised.begin(), own.base.normalised.end());
+    add_samples(pile_force_rows(), own, out.figures);
     // One packing of all piles, for the polar histogram.
     const auto offset = static_cast<std::int64_t>(out.contacts.grains.size());
     for (const dem::Grain& g : pile.grains) {
@@ -102,11 +183,7 @@ void add_base(const Gathered& all, TopicResult& out) {
   const Eigen::VectorXd n = Eigen::Map<const Eigen::VectorXd>(
       all.base.data(), static_cast<Eigen::Index>(all.base.size()));
   const ExponentialTail tail = exponential_tail(n, kTail);
-  out.summary["forces.tail_rate"] = tail.rate;
-  out.summary["forces.tail_rate.standard_error"] = tail.rate / std::sqrt(tail.count);
-  out.summary["forces.tail_grains"] = static_cast<std::int64_t>(tail.count);
-  out.summary["forces.tail_distance"] = tail.distance;
-  out.summary["forces.tail_p_value"] = tail.p_value;
+  add_values(tail_rows(), tail, out.summary);
   const DensityHistogram h = density_histogram(n, 0, kMostForce, kForceBins);
   const Eigen::VectorXd at = h.centres();
   std::vector<Eigen::Index> filled;
@@ -161,7 +238,7 @@ void add_yield(const PileSet& piles, TopicResult& out) {
           ? repose
           : std::atan(piles.setup().get<dem::PileSetup>().material.friction) * kPerRadian;
   Ensemble stresses;
-  std::vector<double> core, flank, limit;
+  Mobilised found{phi, {}, {}, {}};
   for (int r = 0; r < piles.count(); ++r) {
     Field one;
     one.points = piles.grid();
@@ -171,22 +248,20 @@ void add_yield(const PileSet& piles, TopicResult& out) {
     stresses.add(one);
     add_yield_columns(one, phi);
     const Eigen::VectorXd& mobilised = one.find("mobilised_friction")->value;
-    core.push_back(inner_median(piles, mobilised, true));
-    flank.push_back(inner_median(piles, mobilised, false));
+    found.core.push_back(inner_median(piles, mobilised, true));
+    found.flanks.push_back(inner_median(piles, mobilised, false));
     double at = 0, count = 0;
     for (const Eigen::Index p : piles.inside()) {
       if (std::isnan(mobilised[p])) continue;
       ++count;
       at += mobilised[p] >= kAtLimit * phi ? 1 : 0;
     }
-    limit.push_back(at / count);
+    found.at_limit.push_back(at / count);
   }
   Field mean = piles.in_metres(stresses);
   add_yield_columns(mean, phi);
-  out.summary["yield.phi_deg"] = phi;
-  add_median(out.summary, "yield.mobilised_core_deg", core, piles.resamples());
-  add_median(out.summary, "yield.mobilised_flanks_deg", flank, piles.resamples());
-  add_median(out.summary, "yield.share_at_limit", limit, piles.resamples());
+  add_values(limit_rows(), found, out.summary);
+  add_medians(mobilised_rows(), found, piles.resamples(), out.summary);
   Picture friction = maps("Mobilised friction angle", "x / h", "y / h", "deg",
                           {map_of(piles, "", mean.find("mobilised_friction")->value)}, false);
   friction.caption = fmt::format(
@@ -227,16 +302,7 @@ void add_invariants(const PileSet& piles, TopicResult& out) {
   }
   const Series trace = binned("points inside the heap", volume, pressure, kTraceBins),
                dev = binned("points inside the heap", shear, deviator, kTraceBins);
-  // Slope of the upper third of the bins over that of the lower third: 1 is linear.
-  const Eigen::Index n = trace.x.size(), third = n / 3;
-  double ratio = NAN;
-  if (third >= 1) {
-    const double low = (trace.y[third] - trace.y[0]) / (trace.x[third] - trace.x[0]);
-    const double high =
-        (trace.y[n - 1] - trace.y[n - 1 - third]) / (trace.x[n - 1] - trace.x[n - 1 - third]);
-    ratio = high / low;
-  }
-  out.summary["invariants.trace_slope_ratio"] = ratio;
+  add_values(trace_rows(), trace, out.summary);
   Picture picture =
       curves("Invariants of incremental stress and strain", "invariant of the strain (10^{-4})",
              "invariant of the stress (N/m)",
@@ -247,8 +313,6 @@ void add_invariants(const PileSet& piles, TopicResult& out) {
   out.sections.emplace_back(std::move(picture));
 }
 
-}  // namespace
-
 TopicResult forces_of_piles(const PileSet& piles) {
   TopicResult out;
   const Gathered all = gather(piles);
@@ -257,7 +321,7 @@ TopicResult forces_of_piles(const PileSet& piles) {
   Picture angles = contact_angles("Directions of contacts", all.contacts);
   angles.caption += " All piles together.";
   out.sections.emplace_back(std::move(angles));
-  out.summary["forces.force_axis_deg"] = order_of(all.contacts, true).second;
+  add_values(gathered_rows(), all, out.summary);
   const auto value = [&](const char* key) { return std::get<double>(out.summary.at(key)); };
   Table chains{
       "Force chains",
@@ -280,6 +344,18 @@ TopicResult forces_of_piles(const PileSet& piles) {
       value("chains.length"), value("yield.mobilised_core_deg"),
       value("yield.mobilised_flanks_deg"), value("yield.phi_deg"));
   return out;
+}
+
+std::vector<SummaryKey> force_figures() {
+  return joined({declared(pile_force_rows()), declared(gathered_rows()), declared(tail_rows()),
+                 declared(limit_rows()), declared(mobilised_rows()), declared(trace_rows())});
+}
+
+}  // namespace
+
+Topic forces_topic() {
+  return {"forces", "base forces, contact angles, force chains, nearness to yield", forces_of_piles,
+          force_figures};
 }
 
 }  // namespace grainfield::coupling

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/figure.h"
+#include "coupling/result/tables.h"
 #include "coupling/statistics/bootstrap.h"
 
 namespace grainfield::coupling {
@@ -29,9 +30,23 @@ struct RobustMean {
 /// `resamples`: draws of the percentile bootstrap.
 RobustMean robust_mean(const std::vector<double>& numbers, int resamples);
 
+/// A figure of the piles: its value is the median of what `of` gives, a number for each.
+template <class Facts>
+using MedianFigure = Figure<Facts, std::vector<double>>;
+
 /// KEY: the median; of two or more numbers also KEY.standard_error (of the median), KEY.least,
 /// KEY.most.
 void add_median(Summary& summary, const std::string& key, const std::vector<double>& numbers,
                 int resamples);
+/// The same of all rows.
+template <class Facts>
+void add_medians(const std::vector<MedianFigure<Facts>>& rows, const Facts& facts, int resamples,
+                 Summary& summary, const std::string& prefix = "") {
+  for (const MedianFigure<Facts>& row : rows) {
+    if (const auto numbers = row.of(facts)) {
+      add_median(summary, prefix + row.key, *numbers, resamples);
+    }
+  }
+}
 
 }  // namespace grainfield::coupling

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "coupling/studies/pile_fields/drawing.h"
 #include "coupling/studies/pile_fields/robust.h"
 #include "coupling/studies/pile_fields/topic.h"
-#include "coupling/studies/pile_fields/topic_result.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -32,6 +32,40 @@ struct Step {
   // from its largest RVE there.
   double scatter = NAN;
 };
+
+// What one quantity asks for, and how it scatters at the size that the fields have.
+struct SizeNeeds {
+  double grains = NAN;
+  std::optional<double> scatter;
+};
+const std::vector<RunFigure<SizeNeeds>>& needs_rows() {
+  using N = const SizeNeeds&;
+  static const std::vector<RunFigure<SizeNeeds>> rows{
+      {"_grains", "-",
+       "grains from which on larger RVEs differ by less than half the tolerance in the mean and "
+       "scatter by less than it between piles; nan: none that fits",
+       [](N n) { return n.grains; }},
+      {"_scatter", "-",
+       "robust relative scatter between piles of a single RVE of the size used for the fields",
+       [](N n) { return n.scatter ? std::optional<FigureValue>(*n.scatter) : std::nullopt; }},
+  };
+  return rows;
+}
+
+// The quantity that asks for the most.
+struct LargestNeed {
+  double grains = 0;
+  std::string quantity;
+};
+const std::vector<RunFigure<LargestNeed>>& largest_rows() {
+  using L = const LargestNeed&;
+  static const std::vector<RunFigure<LargestNeed>> rows{
+      {"rve_size.grains", "-", "grains an RVE needs: the most that a quantity asks for",
+       [](L l) { return l.grains; }, "RVE (grains)"},
+      {"rve_size.limited_by", "text", "that quantity", [](L l) { return l.quantity; }},
+  };
+  return rows;
+}
 
 struct SizeSeries {
   std::vector<double> grains, radius;               // per size
@@ -137,8 +171,6 @@ void compare(SizeSeries& out, double tolerance) {
   }
 }
 
-}  // namespace
-
 TopicResult rve_size_of_piles(const PileSet& piles) {
   SizeSeries study;
   measure(piles, study);
@@ -157,8 +189,7 @@ TopicResult rve_size_of_piles(const PileSet& piles) {
   field.add("grains", "1").value = grains;
   std::vector<Frame> values;
   Table table{"Size of the RVE", "", {"quantity", "grains needed", "why"}, {}};
-  double needed = 0;
-  std::string worst;
+  LargestNeed most;
   for (std::size_t q = 0; q < kWatched.size(); ++q) {
     const std::string key = kWatched[q].key;
     Eigen::VectorXd value(sizes), scatter(sizes);
@@ -181,27 +212,24 @@ TopicResult rve_size_of_piles(const PileSet& piles) {
     }
     values.push_back(std::move(frame));
     const double enough = study.enough[q];
-    out.summary["rve_size." + key + "_grains"] = enough;
-    // At the size that everything else uses.
+    SizeNeeds needs{enough, std::nullopt};
     for (Eigen::Index s = 0; s < sizes; ++s) {
       if (study.radius[static_cast<std::size_t>(s)] <= piles.radius() * (1 + 1e-9)) {
-        out.summary["rve_size." + key + "_scatter"] = scatter[s];
+        needs.scatter = scatter[s];
       }
     }
-    if (!std::isnan(needed) && !(enough <= needed)) {
-      needed = enough;
-      worst = key;
-    }
+    add_values(needs_rows(), needs, out.summary, "rve_size." + key);
+    if (!std::isnan(most.grains) && !(enough <= most.grains)) most = {enough, key};
     table.rows.push_back({kWatched[q].label,
                           std::isnan(enough) ? "more than fit" : fmt::format("{:.0f}", enough),
                           study.why[q]});
   }
-  out.summary["rve_size.grains"] = needed;
-  out.summary["rve_size.limited_by"] = worst;
-  out.sentence =
-      std::isnan(needed)
-          ? fmt::format("No RVE that fits gives the {} within {:g} %.", worst, 100 * tolerance)
-          : fmt::format("An RVE needs {:.0f} grains; the {} asks for the most.", needed, worst);
+  add_values(largest_rows(), most, out.summary);
+  out.sentence = std::isnan(most.grains)
+                     ? fmt::format("No RVE that fits gives the {} within {:g} %.", most.quantity,
+                                   100 * tolerance)
+                     : fmt::format("An RVE needs {:.0f} grains; the {} asks for the most.",
+                                   most.grains, most.quantity);
   Picture picture = curves("RVE size: value against number of grains", "grains in the RVE",
                            "value / value of the largest RVE", values);
   picture.caption = fmt::format(
@@ -215,6 +243,17 @@ TopicResult rve_size_of_piles(const PileSet& piles) {
   out.sections.emplace_back(std::move(table));
   out.fields.emplace_back("rve_size", std::move(field));
   return out;
+}
+
+std::vector<SummaryKey> rve_size_figures() {
+  return joined({declared(largest_rows()), declared(needs_rows(), "rve_size.*")});
+}
+
+}  // namespace
+
+Topic rve_size_topic() {
+  return {"rve_size", "stress, strain and fabric against the size of the RVE", rve_size_of_piles,
+          rve_size_figures};
 }
 
 }  // namespace grainfield::coupling

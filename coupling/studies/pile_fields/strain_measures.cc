@@ -8,7 +8,6 @@
 #include "coupling/studies/pile_fields/drawing.h"
 #include "coupling/studies/pile_fields/robust.h"
 #include "coupling/studies/pile_fields/topic.h"
-#include "coupling/studies/pile_fields/topic_result.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -103,15 +102,66 @@ std::vector<Eigen::Index> lowest_row(const PileSet& piles) {
 
 // Differences of a measure from the reference: of every pile, and of the mean of the piles along
 // the lowest row, which is what Roul compares.
+struct Differences {
+  std::vector<double> tensor, yy, ratio;  // of every pile
+  ValueWithError low;
+};
+const std::vector<MedianFigure<Differences>>& difference_rows() {
+  using D = const Differences&;
+  static const std::vector<MedianFigure<Differences>> rows{
+      {"difference", "-",
+       "relative difference of the strain tensor from Cambou's over the points inside; median",
+       [](D d) { return d.tensor; }},
+      {"difference_yy", "-", "the same of the yy component", [](D d) { return d.yy; }},
+      {"ratio", "-", "projection of the strain onto Cambou's: 1 is equal size; median",
+       [](D d) { return d.ratio; }},
+  };
+  return rows;
+}
+const std::vector<ErrorFigure<Differences>>& low_rows() {
+  static const std::vector<ErrorFigure<Differences>> rows{
+      {"difference_yy_low", "-",
+       "difference_yy of the mean over piles along the lowest row of elements",
+       [](const Differences& d) { return d.low; }},
+  };
+  return rows;
+}
+
+// What a measure leaves of the displacements, in every pile; the derivative fits none.
+struct Misfits {
+  const std::string& measure;
+  std::vector<double> shares;
+};
+const std::vector<MedianFigure<Misfits>>& misfit_rows() {
+  static const std::vector<MedianFigure<Misfits>> rows{
+      {"misfit", "-", "share of the displacements that the gradient leaves; median",
+       [](const Misfits& m) {
+         return m.measure == "derivative" ? std::nullopt : std::optional(m.shares);
+       }},
+  };
+  return rows;
+}
+
+using DipRatios = std::vector<double>;
+const std::vector<MedianFigure<DipRatios>>& dip_ratio_rows() {
+  static const std::vector<MedianFigure<DipRatios>> rows{
+      {"strain.dip_ratio", "-",
+       "Cambou's vertical strain within 0.1 half bases of the apex over that from 0.15 to 0.4, "
+       "along the lowest row; median over piles",
+       [](const DipRatios& ratios) { return ratios; }},
+  };
+  return rows;
+}
+
 void add_differences(const PileSet& piles, const std::map<std::string, Measured>& all,
                      const std::string& name, Summary& summary, std::vector<std::string>& row) {
   const Measured &own = all.at(name), &reference = all.at(kReference);
-  std::vector<double> tensor, yy, ratio;
+  Differences found;
   for (std::size_t r = 0; r < own.piles.size(); ++r) {
     const Overlap o = overlap(reference.piles[r], own.piles[r], piles.inside());
-    tensor.push_back(std::sqrt(o.difference / o.reference));
-    yy.push_back(std::sqrt(o.difference_yy / o.reference_yy));
-    ratio.push_back(o.product / o.reference);
+    found.tensor.push_back(std::sqrt(o.difference / o.reference));
+    found.yy.push_back(std::sqrt(o.difference_yy / o.reference_yy));
+    found.ratio.push_back(o.product / o.reference);
   }
   const std::vector<Eigen::Index> low = lowest_row(piles);
   BootstrapOptions options;
@@ -135,19 +185,18 @@ void add_differences(const PileSet& piles, const std::map<std::string, Measured>
       },
       options);
   const std::string prefix = "strain." + name + ".";
-  add_median(summary, prefix + "difference", tensor, piles.resamples());
-  add_median(summary, prefix + "difference_yy", yy, piles.resamples());
-  add_median(summary, prefix + "ratio", ratio, piles.resamples());
-  summary[prefix + "difference_yy_low"] = base[0].value;
-  if (piles.count() > 1) summary[prefix + "difference_yy_low.standard_error"] = base[0].error;
+  found.low = {base[0].value, std::nullopt};
+  if (piles.count() > 1) found.low.error = base[0].error;
+  add_medians(difference_rows(), found, piles.resamples(), summary, prefix);
+  add_values(low_rows(), found, summary, prefix);
   const auto percent = [&](const std::vector<double>& values) {
     const RobustMean m = robust_mean(values, piles.resamples());
     return fmt::format("{:.1f} ± {:.1f} %", 100 * m.median, 100 * m.error);
   };
-  const RobustMean size = robust_mean(ratio, piles.resamples());
+  const RobustMean size = robust_mean(found.ratio, piles.resamples());
   row = {name,
-         percent(tensor),
-         percent(yy),
+         percent(found.tensor),
+         percent(found.yy),
          fmt::format("{:.1f} ± {:.1f} %", 100 * base[0].value, 100 * base[0].error),
          fmt::format("{:.3f} ± {:.3f}", size.median, size.error),
          own.gaps};
@@ -171,8 +220,6 @@ std::vector<double> dip_ratios(const PileSet& piles, const std::vector<Field>& a
   }
   return out;
 }
-
-}  // namespace
 
 TopicResult strain_measures_of_piles(const PileSet& piles) {
   const std::map<std::string, Measured> all = measure(piles);
@@ -207,11 +254,10 @@ TopicResult strain_measures_of_piles(const PileSet& piles) {
       for (const Eigen::Index p : piles.inside()) own.push_back(f.find("misfit")->value[p]);
       misfit.push_back(median_of(std::move(own)));
     }
-    if (name != "derivative") {
-      add_median(out.summary, "strain." + name + ".misfit", misfit, piles.resamples());
-    }
+    add_medians(misfit_rows(), {name, misfit}, piles.resamples(), out.summary,
+                "strain." + name + ".");
     if (name == kReference) {
-      add_median(out.summary, "strain.dip_ratio", dip_ratios(piles, m.piles), piles.resamples());
+      add_medians(dip_ratio_rows(), dip_ratios(piles, m.piles), piles.resamples(), out.summary);
     }
     Field field = piles.in_metres(m.ensemble);
     field.add("strain_yy_median", "1").value = yy;
@@ -235,6 +281,18 @@ TopicResult strain_measures_of_piles(const PileSet& piles) {
   out.sections.emplace_back(std::move(along));
   out.sections.emplace_back(std::move(table));
   return out;
+}
+
+std::vector<SummaryKey> strain_measure_figures() {
+  return joined({declared(difference_rows(), "strain.*."), declared(low_rows(), "strain.*."),
+                 declared(misfit_rows(), "strain.*."), declared(dip_ratio_rows())});
+}
+
+}  // namespace
+
+Topic strain_measures_topic() {
+  return {"strain_measures", "five measures of strain on the same points", strain_measures_of_piles,
+          strain_measure_figures};
 }
 
 }  // namespace grainfield::coupling

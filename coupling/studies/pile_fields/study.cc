@@ -5,11 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <set>
 
 #include "coupling/report/judgement.h"
 #include "coupling/run/finished_runs.h"
 #include "coupling/run/study_result.h"
+#include "coupling/studies/pile/figures.h"
 #include "coupling/studies/pile/keys.h"
 #include "coupling/studies/pile/pile_run.h"
 #include "coupling/studies/pile/simulation.h"
@@ -18,7 +19,6 @@
 #include "coupling/studies/pile_fields/pile_set.h"
 #include "coupling/studies/pile_fields/setup.h"
 #include "coupling/studies/pile_fields/topic.h"
-#include "coupling/studies/pile_fields/topic_result.h"
 #include "dem/snapshot/contact_changes.h"
 
 namespace grainfield::coupling {
@@ -83,40 +83,59 @@ Comparison pressures(const PileSet& piles) {
                         piles.count());
 }
 
+const std::vector<RunFigure<PileSet>>& set_rows() {
+  using P = const PileSet&;
+  static const std::vector<RunFigure<PileSet>> rows{
+      {"fields.rve_radius", "m", "radius of the RVE", [](P p) { return p.radius(); }},
+      {"fields.points_inside", "-", "points of the map whose RVE is inside the heap",
+       [](P p) { return static_cast<std::int64_t>(p.inside().size()); }},
+      {"fields.change", "text", "state that strains and constants are taken from",
+       [](P p) { return p.change(); }},
+  };
+  return rows;
+}
+
+// Figures of study pile that this one has, too.
+const std::set<std::string> kOfPiles{"dem.repose_angle_left_deg",
+                                     "dem.repose_angle_right_deg",
+                                     "pile.height",
+                                     "pile.mean_diameter",
+                                     "heap.volume_fraction",
+                                     "heap.rho_g_h",
+                                     "density.ratio"};
+
 void add_heaps(const PileSet& piles, const std::vector<std::string>& files, Summary& summary) {
-  std::map<std::string, std::vector<double>> figures;
+  FigureSamples figures;
   for (int r = 0; r < piles.count(); ++r) {
     const PileFrame& f = piles.frame(r);
     const Realization one = read_realization(files[static_cast<std::size_t>(r)]);
     for (const auto& [key, figure] : one.figures) figures[key].push_back(figure);
-    const auto own = [&](const char* key, double figure) {
-      if (one.figures.count(key) == 0) figures[key].push_back(figure);
-    };
+    const HeapSetup heap;
+    FigureSamples own;
+    for (const Figure<PileFacts>& row : pile_rows()) {
+      if (kOfPiles.contains(row.key)) add_samples<PileFacts>({row}, {one["pile"], f, heap}, own);
+    }
     double weight = 0;
     for (const dem::Grain& g : one["pile"].grains) weight += g.fixed ? 0 : g.mass * f.gravity;
-    own("base.weight_ratio", dem::base_force(one["pile"]).y() / weight);
-    own("dem.repose_angle_left_deg", f.repose_left_deg);
-    own("dem.repose_angle_right_deg", f.repose_right_deg);
-    own("pile.height", f.height);
-    own("pile.mean_diameter", f.diameter);
-    figures["heap.volume_fraction"].push_back(f.volume_fraction);
-    figures["heap.rho_g_h"].push_back(f.pressure());
-    figures["density.ratio"].push_back(f.centre_fraction / f.surface_fraction);
+    own["base.weight_ratio"] = {dem::base_force(one["pile"]).y() / weight};
+    for (const auto& [key, values] : own) {
+      if (!one.figures.contains(key)) figures[key].push_back(values.front());
+    }
   }
   // A figure that only some of the runs left is none of the ensemble's.
   for (auto at = figures.begin(); at != figures.end();) {
     at = static_cast<int>(at->second.size()) == piles.count() ? std::next(at) : figures.erase(at);
   }
   add_figures(summary, figures);
-  if (piles.setup().get<GrainFiles>().files.empty()) {
-    summary["source.kind"] = piles.setup().get<dem::PileSetup>().source.kind;
-    if (piles.setup().get<dem::PileSetup>().source.kind == "point") {
-      summary["source.interval"] = piles.setup().get<dem::PileSetup>().source.interval;
-    }
-  }
-  summary["fields.rve_radius"] = piles.radius();
-  summary["fields.points_inside"] = static_cast<std::int64_t>(piles.inside().size());
-  summary["fields.change"] = piles.change();
+  if (piles.setup().get<GrainFiles>().files.empty())
+    add_values(source_rows(), piles.setup(), summary);
+  add_values(set_rows(), piles, summary);
+}
+
+std::vector<SummaryKey> pile_fields_figures() {
+  std::vector<std::vector<SummaryKey>> parts{declared(set_rows())};
+  for (const Topic& topic : topics()) parts.push_back(topic.figures());
+  return joined(parts);
 }
 
 struct Looked {
@@ -177,6 +196,12 @@ StudyResult analyse(const Case& value, const std::vector<std::string>& files, in
 }
 
 }  // namespace
+
+const std::vector<Topic>& topics() {
+  static const std::vector<Topic> all{rve_size_topic(), strain_measures_topic(), elastic_topic(),
+                                      fabric_topic(), forces_topic()};
+  return all;
+}
 
 Study pile_fields_study() {
   Study out;

@@ -8,9 +8,10 @@ namespace {
 using Value = std::optional<FigureValue>;
 
 // Of realizations that are enough to compare a ring with the axis.
-template <class T>
-Value of_ring(const RingFacts& f, const T& value) {
-  return f.ring.word().empty() ? std::nullopt : Value(value);
+std::optional<ValueWithError> of_ring(const RingFacts& f, const FigureValue& value,
+                                      std::optional<double> error = std::nullopt) {
+  if (f.ring.word().empty()) return std::nullopt;
+  return ValueWithError{value, error};
 }
 
 // What the simulation leaves.
@@ -53,13 +54,13 @@ const std::vector<RunFigure<LayersFacts>>& layers_rows() {
   return all;
 }
 
-const std::vector<RunFigure<RingFacts>>& ring_rows() {
+const std::vector<ErrorFigure<RingFacts>>& ring_rows() {
   using F = const RingFacts&;
-  static const std::vector<RunFigure<RingFacts>> all{
+  static const std::vector<ErrorFigure<RingFacts>> all{
       {"response.ring_less_axis", "-",
        "3D: pressure on the base on a ring about the load less that below the load, over F/h^2; "
        "each realization's ring is where the others' mean is largest, beyond the averaging",
-       [](F f) { return of_ring(f, f.ring.difference); }},
+       [](F f) { return of_ring(f, f.ring.difference, f.ring.error); }},
       {"response.ring_at", "-", "3D: radius of that ring over h",
        [](F f) { return of_ring(f, f.ring.at / f.depth); }},
       {"response.ring_p", "-",
@@ -69,20 +70,16 @@ const std::vector<RunFigure<RingFacts>>& ring_rows() {
       {"response.ring", "text", "3D: \"ring\", \"peak\", or \"neither\" where that is 0.05 or more",
        [](F f) { return of_ring(f, f.ring.word()); }},
       {"response.within_radius", "m", "3D: where the profiles by radius end",
-       [](F f) { return f.within_radius; }},
+       [](F f) { return ValueWithError{f.within_radius}; }},
       {"response.within_over_load", "-",
        "3D: base response within that radius, from its profile, over F",
-       [](F f) { return f.within_force; }},
+       [](F f) { return ValueWithError{f.within_force}; }},
   };
   return all;
 }
 
 std::vector<SummaryKey> point_load_figures() {
-  std::vector<SummaryKey> out = simulated();
-  for (const auto& part : {declared(layers_rows()), declared(ring_rows())}) {
-    out.insert(out.end(), part.begin(), part.end());
-  }
-  return out;
+  return joined({simulated(), declared(layers_rows()), declared(ring_rows())});
 }
 
 }  // namespace grainfield::coupling

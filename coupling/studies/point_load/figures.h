@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "coupling/compare/ring.h"
-#include "coupling/output/figure.h"
+#include "coupling/result/figure.h"
 
 namespace grainfield::coupling {
 
@@ -20,6 +20,6 @@ struct RingFacts {
   double depth = 0;                            ///< m
   double within_radius = 0, within_force = 0;  ///< where profiles end, m; the response there over F
 };
-const std::vector<RunFigure<RingFacts>>& ring_rows();
+const std::vector<ErrorFigure<RingFacts>>& ring_rows();
 
 }  // namespace grainfield::coupling

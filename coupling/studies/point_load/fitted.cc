@@ -5,11 +5,11 @@
 #include <memory>
 
 #include "coupling/fit/coverage.h"
+#include "coupling/fit/ensemble_fit.h"
 #include "coupling/fit/fit_report.h"
 #include "coupling/fit/fit_tables.h"
-#include "coupling/fit/fits.h"
 #include "coupling/judge/judge.h"
-#include "coupling/models/models.h"
+#include "coupling/models/evaluate_model.h"
 #include "coupling/observe/setup.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/studies/point_load/page.h"

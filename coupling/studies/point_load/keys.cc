@@ -2,7 +2,7 @@
 #include "coupling/studies/point_load/keys.h"
 
 #include "coupling/case/declare.h"
-#include "coupling/run/superellipsoid_keys.h"
+#include "coupling/run/grain_keys.h"
 #include "coupling/studies/point_load/simulation.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::PointLoadSetup, MEMBER)

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "coupling/averaging/layer.h"
-#include "coupling/observe/lines.h"
 #include "coupling/observe/method_averages.h"
+#include "coupling/observe/seen_models.h"
 #include "coupling/run/realization_file.h"
 
 namespace grainfield::coupling {

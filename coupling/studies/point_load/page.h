@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
+#include "coupling/base/field.h"
 #include "coupling/compare/compare.h"
-#include "coupling/field.h"
-#include "coupling/fit/fits.h"
+#include "coupling/fit/ensemble_fit.h"
 #include "coupling/report/report.h"
 #include "coupling/run/study_result.h"
 #include "dem/snapshot/snapshot.h"

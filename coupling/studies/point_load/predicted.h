@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "coupling/averaging/kernel.h"
-#include "coupling/models/models.h"
-#include "coupling/output/figure.h"
-#include "coupling/output/tables.h"
+#include "coupling/models/evaluate_model.h"
 #include "coupling/report/report.h"
+#include "coupling/result/figure.h"
+#include "coupling/result/tables.h"
 
 namespace grainfield::coupling {
 

@@ -222,7 +222,6 @@ class SpaceAnalysis {
     const RingAgainstAxis ring = ring_against_axis(
         radii_.own(), -base_rings_.samples("sigma_zz") / unit, all_.kernel->independent_length());
     add_values(ring_rows(), {ring, all_.layer.depth, all_.half, force_within()}, summary);
-    if (!ring.word().empty()) summary["response.ring_less_axis.standard_error"] = ring.error;
     all_.add_own_figures(summary);
     add_figures(summary, predicted_.figures);
     if (!predicted_.refusal.empty()) summary["predicted.refusal"] = predicted_.refusal;

@@ -5,7 +5,7 @@
 
 #include "coupling/case/case.h"
 #include "coupling/case/study.h"
-#include "coupling/models/models.h"
+#include "coupling/models/evaluate_model.h"
 #include "coupling/observe/seen_models.h"
 #include "coupling/run/study_result.h"
 

@@ -6,6 +6,7 @@
 
 #include "coupling/case/declare.h"
 #include "coupling/judge/words.h"
+#include "coupling/result/csv.h"
 #include "coupling/statistics/spread.h"
 #include "coupling/studies/sample/block.h"
 
@@ -32,10 +33,6 @@ Spread spread_in(const Eigen::MatrixXd& values, Index state) {
 }
 
 std::string shown(const Spread& s) { return with_error(s.mean, s.standard_error); }
-
-std::string block_number(double value) {
-  return std::isnan(value) ? "nan" : fmt::format("{:.6g}", value);
-}
 
 struct Stage {
   Spread grains, law, difference;
@@ -106,36 +103,36 @@ Table stages_table(const BlockComparison& c) {
 }  // namespace
 
 std::string block_csv(const BlockComparison& c) {
-  std::string out =
-      "# the sample as a block of finite elements beside the grains, mean over realizations\n"
-      "# NAME: of the grains, with its standard error; NAME_LAW: of the block, then the block less "
-      "the grains, its standard error, and the one over the other\n";
-  std::string heading = "state,strain";
+  Csv out;
+  out.comment("the sample as a block of finite elements beside the grains, mean over realizations");
+  out.comment(
+      "NAME: of the grains, with its standard error; NAME_LAW: of the block, then the block less "
+      "the grains, its standard error, and the one over the other");
+  out.add("state").add("strain");
   for (const BlockQuantity& q : c.quantities) {
-    const std::string name = q.unit == "-" ? q.name : q.name + "_" + q.unit;
-    heading += fmt::format(",{0},{0}_error", name);
+    const std::string name = csv_heading(q.name, q.unit);
+    out.add(name).add(name + "_error");
     for (const std::string& law : c.laws) {
-      heading += fmt::format(
-          ",{0}_{1},{0}_{1}_difference,{0}_{1}_difference_error,{0}_{1}_over_error", name, law);
-    }
-  }
-  out += heading + "\n";
-  for (Index k = 0; k < c.strain.size(); ++k) {
-    out += fmt::format("{},{:.9g}", k, c.strain[k]);
-    for (const BlockQuantity& q : c.quantities) {
-      const Spread grains = spread_in(q.grains, k);
-      out += fmt::format(",{},{}", block_number(grains.mean), block_number(grains.standard_error));
-      for (const std::string& law : c.laws) {
-        const Stage s = stage_of(q, law, k);
-        for (const double v :
-             {s.law.mean, s.difference.mean, s.difference.standard_error, s.over_error()}) {
-          out += fmt::format(",{}", block_number(v));
-        }
+      for (const char* part : {"", "_difference", "_difference_error", "_over_error"}) {
+        out.add(name + "_" + law + part);
       }
     }
-    out += "\n";
   }
-  return out;
+  out.end_row();
+  for (Index k = 0; k < c.strain.size(); ++k) {
+    out.add(k).add(c.strain[k]);
+    for (const BlockQuantity& q : c.quantities) {
+      const Spread grains = spread_in(q.grains, k);
+      out.add(grains.mean).add(grains.standard_error);
+      for (const std::string& law : c.laws) {
+        const Stage s = stage_of(q, law, k);
+        out.add(s.law.mean).add(s.difference.mean).add(s.difference.standard_error);
+        out.add(s.over_error());
+      }
+    }
+    out.end_row();
+  }
+  return out.text();
 }
 
 namespace {

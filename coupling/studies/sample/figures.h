@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/output/figure.h"
+#include "coupling/result/figure.h"
 #include "coupling/studies/sample/simulation/setup.h"
 #include "coupling/studies/sample/state_table.h"
 

@@ -2,7 +2,7 @@
 #include "coupling/studies/sample/keys.h"
 
 #include "coupling/case/declare.h"
-#include "coupling/run/superellipsoid_keys.h"
+#include "coupling/run/grain_keys.h"
 #include "coupling/studies/sample/simulation/grains.h"
 #include "coupling/studies/sample/simulation/setup.h"
 #include "dem/packing/loose.h"

@@ -6,8 +6,8 @@
 
 #include "coupling/case/study.h"
 #include "coupling/elastic_constants/space_symmetry.h"
-#include "coupling/output/tables.h"
 #include "coupling/report/report.h"
+#include "coupling/result/tables.h"
 
 namespace grainfield::coupling {
 

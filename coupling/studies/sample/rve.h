@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "continuum/constants.h"
-#include "coupling/output/figure.h"
+#include "coupling/result/figure.h"
+#include "coupling/result/tables.h"
 #include "coupling/strain/hull.h"
 #include "coupling/studies/sample/simulation/setup.h"
 
@@ -72,11 +73,17 @@ FigureSamples rve_figures(const RveTable& table, const std::string& deformation)
 /// least after the first state. (The least of each realization by itself would tell of contraction
 /// wherever they scatter.)
 struct Contraction {
-  FigureSamples figures;       ///< by summary key, or empty
-  double strain = kNan;        ///< shear strain xz of the samples there
-  double strain_error = kNan;  ///< by the bootstrap over realizations; nan of one
+  /// Of one realization: trace/3 there and at the end of the loading.
+  struct Volume {
+    double there = 0, at_end = 0;
+  };
+  std::vector<Volume> volumes;  ///< of every realization; empty: no contraction was looked for
+  double strain = kNan;         ///< shear strain xz of the samples there
+  double strain_error = kNan;   ///< by the bootstrap over realizations; nan of one
 };
 Contraction rve_contraction(const RveTable& table);
+/// Its figures, and what the others are: rve.*.
+void add_contraction(const Contraction& found, Summary& summary);
 
 /// Mean of a number over RVEs and its error bar s/sqrt(N), nan of one.
 struct RveMean {

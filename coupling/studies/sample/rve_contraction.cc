@@ -1,11 +1,41 @@
 // Whether the inside of a sheared sample contracts before it dilates.
 #include <Eigen/Core>
+#include <cmath>
 
+#include "coupling/run/study_result.h"
 #include "coupling/statistics/bootstrap.h"
 #include "coupling/studies/sample/rve.h"
+#include "coupling/studies/sample/rve_page.h"
 
 namespace grainfield::coupling {
 namespace {
+
+const std::vector<Figure<Contraction::Volume>>& volume_rows() {
+  using V = const Contraction::Volume&;
+  static const std::vector<Figure<Contraction::Volume>> rows{
+      {"rve.contraction", "-",
+       "simple shear: -trace/3 of the strain of the largest RVEs where its mean over the samples "
+       "is least; the first state does not count, so it is below 0 where they dilate from the "
+       "start",
+       [](V v) { return -v.there; }},
+      {"rve.dilation", "-", "trace/3 of their strain at the end of the loading less the one there",
+       [](V v) { return v.at_end - v.there; }},
+  };
+  return rows;
+}
+
+const std::vector<ErrorFigure<Contraction>>& contraction_rows() {
+  static const std::vector<ErrorFigure<Contraction>> rows{
+      {"rve.contraction_strain", "-",
+       "shear strain xz of the samples there, its standard error by drawing samples anew",
+       [](const Contraction& c) {
+         return ValueWithError{c.strain, std::isfinite(c.strain_error)
+                                             ? std::optional(c.strain_error)
+                                             : std::nullopt};
+       }},
+  };
+  return rows;
+}
 
 // states x realizations, of the loading: trace/3 of the strain of the largest RVEs.
 Eigen::MatrixXd volume_paths(const RveTable& table) {
@@ -51,8 +81,7 @@ Contraction rve_contraction(const RveTable& table) {
   for (int k = 0; k < realizations; ++k) all.push_back(k);
   const Eigen::Index at = turning(paths, all);
   for (Eigen::Index k = 0; k < paths.cols(); ++k) {
-    out.figures["rve.contraction"].push_back(-paths(at, k));
-    out.figures["rve.dilation"].push_back(paths(paths.rows() - 1, k) - paths(at, k));
+    out.volumes.push_back({paths(at, k), paths(paths.rows() - 1, k)});
   }
   out.strain = shear_at(table, at);
   if (realizations < 2) return out;
@@ -61,6 +90,20 @@ Contraction rve_contraction(const RveTable& table) {
   };
   out.strain_error = bootstrap(realizations, strain, {}).front().error;
   return out;
+}
+
+void add_contraction(const Contraction& found, Summary& summary) {
+  if (found.volumes.empty()) return;
+  FigureSamples samples;
+  for (const Contraction::Volume& volume : found.volumes) {
+    add_samples(volume_rows(), volume, samples);
+  }
+  add_figures(summary, samples);
+  add_values(contraction_rows(), found, summary);
+}
+
+std::vector<SummaryKey> contraction_figures() {
+  return joined({declared(volume_rows()), declared(contraction_rows())});
 }
 
 }  // namespace grainfield::coupling

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "continuum/constants.h"
+#include "coupling/result/csv.h"
 #include "coupling/studies/sample/rve.h"
 
 namespace grainfield::coupling {
@@ -48,10 +49,6 @@ const std::vector<RveColumn>& rve_columns() {
   };
   // clang-format on
   return columns;
-}
-
-std::string cell_text(double value) {
-  return std::isnan(value) ? "nan" : fmt::format("{:.9g}", value);
 }
 
 // Components that tell of a deformation.
@@ -168,44 +165,47 @@ std::vector<std::string> rve_warnings(const RveTable& table) {
 
 std::string rve_csv(const RveTable& table) {
   const std::size_t realizations = table.gradients.size();
-  std::string out = fmt::format(
-      "# RVEs: of each column the mean over the RVEs and the realizations, and the error bar "
-      "s/sqrt(N) over the RVEs of a realization (Wellmann 31), mean over realizations: {}\n"
-      "# radius: over sample.radius\n# strain: of the deformation\n"
-      "# imposed_zz, imposed_xz: of the sample's edges\n"
-      "# sample_zz_Pa, sample_xz_Pa: of all contacts of the sample over its volume\n",
-      realizations);
-  for (const std::string& line : rve_warnings(table)) out += "# " + line + "\n";
-  std::string heading = "radius,state,strain,imposed_zz,imposed_xz,sample_zz_Pa,sample_xz_Pa";
+  Csv out;
+  out.comment(fmt::format(
+      "RVEs: of each column the mean over the RVEs and the realizations, and the error bar "
+      "s/sqrt(N) over the RVEs of a realization (Wellmann 31), mean over realizations: {}",
+      realizations));
+  out.comment("radius: over sample.radius").comment("strain: of the deformation");
+  out.comment("imposed_zz, imposed_xz: of the sample's edges");
+  out.comment("sample_zz_Pa, sample_xz_Pa: of all contacts of the sample over its volume");
+  for (const std::string& line : rve_warnings(table)) out.comment(line);
+  std::vector<std::string> names;
   for (const RveColumn& c : rve_columns()) {
-    const std::string unit = *c.unit != '\0' ? std::string("_") + c.unit : "";
-    out += fmt::format("# {}{}: {}\n", c.name, unit, c.meaning);
-    heading += fmt::format(",{0}{1},{0}{1}_error_bar", c.name, unit);
+    names.push_back(csv_heading(c.name, c.unit));
+    out.comment(names.back() + ": " + c.meaning);
+    names.push_back(names.back() + "_error_bar");
   }
-  out += heading + "\n";
+  out.row("radius", "state", "strain", "imposed_zz", "imposed_xz", "sample_zz_Pa", "sample_xz_Pa",
+          names);
   for (std::size_t r = 0; r < table.radii.size(); ++r) {
     for (std::size_t s = 0; s < table.strain.size(); ++s) {
       const auto over = [&](auto&& of) {
         std::vector<double> values;
         for (std::size_t k = 0; k < realizations; ++k) values.push_back(of(k));
-        return cell_text(mean_of(values));
+        return mean_of(values);
       };
       const auto of_sample = [&](const auto& tensors, int a, int b) {
         return over([&](std::size_t k) { return symmetric(tensors[k][s], a, b); });
       };
-      out += fmt::format("{:g},{},{:.9g},{},{},{},{}", table.radii[r], s, table.strain[s],
-                         of_sample(table.gradients, 2, 2), of_sample(table.gradients, 0, 2),
-                         of_sample(table.stresses, 2, 2), of_sample(table.stresses, 0, 2));
-      for (const RveColumn& c : rve_columns()) {
-        const auto part = [&](double RveMean::*what) {
-          return over([&](std::size_t k) { return mean_over(table.values[r][k][s], c.of).*what; });
-        };
-        out += fmt::format(",{},{}", part(&RveMean::mean), part(&RveMean::error_bar));
+      out.add(table.radii[r]).add(s).add(table.strain[s]);
+      for (const auto* tensors : {&table.gradients, &table.stresses}) {
+        out.add(of_sample(*tensors, 2, 2)).add(of_sample(*tensors, 0, 2));
       }
-      out += "\n";
+      for (const RveColumn& c : rve_columns()) {
+        for (double RveMean::*part : {&RveMean::mean, &RveMean::error_bar}) {
+          out.add(
+              over([&](std::size_t k) { return mean_over(table.values[r][k][s], c.of).*part; }));
+        }
+      }
+      out.end_row();
     }
   }
-  return out;
+  return out.text();
 }
 
 FigureSamples rve_figures(const RveTable& table, const std::string& deformation) {
@@ -221,18 +221,6 @@ FigureSamples rve_figures(const RveTable& table, const std::string& deformation)
   return out;
 }
 
-std::vector<SummaryKey> rve_summary_keys() {
-  std::vector<SummaryKey> out = declared(rve_rows(), "rve.r*.");
-  out.push_back({"rve.contraction", "-",
-                 "simple shear: -trace/3 of the strain of the largest RVEs where its mean over the "
-                 "samples is least; the first state does not count, so it is below 0 where they "
-                 "dilate from the start"});
-  out.push_back({"rve.contraction_strain", "-",
-                 "shear strain xz of the samples there, its standard error by drawing samples "
-                 "anew"});
-  out.push_back({"rve.dilation", "-",
-                 "trace/3 of their strain at the end of the loading less the one there"});
-  return out;
-}
+std::vector<SummaryKey> rve_summary_keys() { return declared(rve_rows(), "rve.r*."); }
 
 }  // namespace grainfield::coupling

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "coupling/output/triangles_vtu.h"
 #include "coupling/statistics/spread.h"
+#include "coupling/store/vtu.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -12,6 +12,7 @@ inline constexpr KeySection kRveKeys{"rve", KeyRole::analysis, declare_rve_keys}
 
 /// Keys of the figures of RVEs in summary.json.
 std::vector<SummaryKey> rve_summary_keys();
+std::vector<SummaryKey> contraction_figures();
 
 /// Error bars against the radius, strains against the imposed one, the hull of an RVE; nothing
 /// where no radius fits.

@@ -5,16 +5,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "coupling/result/csv.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/statistics/spread.h"
 
 namespace grainfield::coupling {
 namespace {
-
-// Of a CSV; a nan has no sign.
-std::string value_cell(double value) {
-  return std::isnan(value) ? "nan" : fmt::format("{:.9g}", value);
-}
 
 Spread spread_at(const Eigen::MatrixXd& values, Eigen::Index state) {
   std::vector<double> row;
@@ -69,56 +65,52 @@ Eigen::VectorXd StateTable::error(const std::string& name) const {
   return out;
 }
 
-std::string StateTable::comments(const std::string& rows) const {
-  std::string out = fmt::format("# {}; realizations: {}\n", rows, realizations());
+void StateTable::begin(Csv& out, const std::string& rows) const {
+  out.comment(fmt::format("{}; realizations: {}", rows, realizations()));
   for (const StateColumn& column : columns_) {
     const std::string& unit = column.unit(dim_);
-    out += fmt::format("# {}{}: {}\n", column.name, unit == "1" ? "" : " (" + unit + ")",
-                       column.meaning);
+    out.comment(
+        fmt::format("{}{}: {}", column.name, unit == "1" ? "" : " (" + unit + ")", column.meaning));
   }
-  return out;
+}
+
+std::string StateTable::heading(const StateColumn& column) const {
+  const std::string& unit = column.unit(dim_);
+  return unit == "deg" ? column.name : csv_heading(column.name, unit);  // their names say deg
 }
 
 std::string StateTable::csv() const {
-  std::string out = comments(
-      "the recorded states: of each column the mean over realizations and its standard error");
-  const auto heading = [&](const StateColumn& column) {
-    const std::string& unit = column.unit(dim_);
-    return unit == "1" || unit == "deg" ? column.name : column.name + "_" + unit;
-  };
-  out += "state";
-  for (const StateColumn& c : columns_) {
-    out += fmt::format(",{0},{0}_error", heading(c));
-  }
-  out += "\n";
+  Csv out;
+  begin(out,
+        "the recorded states: of each column the mean over realizations and its standard error");
+  out.add("state");
+  for (const StateColumn& c : columns_) out.add(heading(c)).add(heading(c) + "_error");
+  out.end_row();
   for (Eigen::Index k = 0; k < states(); ++k) {
-    out += std::to_string(k);
+    out.add(k);
     for (const Eigen::MatrixXd& values : values_) {
       const Spread spread = spread_at(values, k);
-      out += fmt::format(",{},{}", value_cell(spread.mean), value_cell(spread.standard_error));
+      out.add(spread.mean).add(spread.standard_error);
     }
-    out += "\n";
+    out.end_row();
   }
-  return out;
+  return out.text();
 }
 
 std::string StateTable::csv_of_realizations() const {
-  std::string out = comments("the recorded states of every realization");
-  out += "realization,state";
-  for (const StateColumn& c : columns_) {
-    const std::string& unit = c.unit(dim_);
-    out += fmt::format(",{}", unit == "1" || unit == "deg" ? c.name : c.name + "_" + unit);
-  }
-  out += "\n";
+  Csv out;
+  begin(out, "the recorded states of every realization");
+  out.add("realization").add("state");
+  for (const StateColumn& c : columns_) out.add(heading(c));
+  out.end_row();
   for (Eigen::Index r = 0; r < realizations(); ++r) {
     for (Eigen::Index k = 0; k < states(); ++k) {
-      out += fmt::format("{},{}", r, k);
-      for (const Eigen::MatrixXd& values : values_)
-        out += fmt::format(",{}", value_cell(values(k, r)));
-      out += "\n";
+      out.add(r).add(k);
+      for (const Eigen::MatrixXd& values : values_) out.add(values(k, r));
+      out.end_row();
     }
   }
-  return out;
+  return out.text();
 }
 
 }  // namespace grainfield::coupling

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "coupling/result/csv.h"
 #include "coupling/studies/sample/state_columns.h"
 
 namespace grainfield::coupling {
@@ -33,7 +34,10 @@ class StateTable {
   std::string csv_of_realizations() const;
 
  private:
-  std::string comments(const std::string& rows) const;
+  // What the rows are and what each column is, as comments.
+  void begin(Csv& out, const std::string& rows) const;
+  // The column's name with its unit.
+  std::string heading(const StateColumn& column) const;
 
   int dim_ = 2;
   bool periodic_ = false;

@@ -187,7 +187,7 @@ std::string series_of(const StateTable& table, const char* kind) {
   std::string out =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   for (Eigen::Index k = 0; k < table.states(); ++k) {
-    out += fmt::format("<DataSet timestep=\"{:.9g}\" file=\"{}_state_{:03}.vtu\"/>\n",
+    out += fmt::format("<DataSet timestep=\"{:.9g}\" file=\"states/{}_state_{:03}.vtu\"/>\n",
                        table.of("strain")(k, 0), kind, k);
   }
   return out + "</Collection>\n</VTKFile>\n";
@@ -210,14 +210,6 @@ Report page_of(SampleReport report, const StudyResult& result, const Realization
   report.figures = figure_rows(result);
   report.made = origin_rows(result);
   return sample_report(report);
-}
-
-void add_contraction(const Contraction& found, Summary& summary) {
-  if (found.figures.empty()) return;
-  add_figures(summary, found.figures);
-  summary["rve.contraction_strain"] = found.strain;
-  if (!std::isfinite(found.strain_error)) return;
-  summary["rve.contraction_strain.standard_error"] = found.strain_error;
 }
 
 // rve.csv, rve_hull.vtu, the figures rve.* and their pictures, where the case asks for RVEs.
@@ -337,8 +329,8 @@ Study sample_study() {
   out.grain_radius = [](const Case& c) { return c.get<dem::SampleSetup>().plan.radius; };
   out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::SampleSetup>().motion; };
   out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::SampleSetup>().rest; };
-  out.figures = {sample_figures, rve_summary_keys, moduli_summary_keys, strength_summary_keys,
-                 block_summary_keys};
+  out.figures = {sample_figures,      rve_summary_keys,      contraction_figures,
+                 moduli_summary_keys, strength_summary_keys, block_summary_keys};
   out.without = {"material.gravity", "material.floor_friction", "compare.models", "output.fields"};
   out.models_optional = true;
   out.dimension = [](const Case& value) { return value.get<dem::SampleSetup>().plan.dim; };

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "coupling/case/case.h"
-#include "coupling/models/models.h"
+#include "coupling/models/evaluate_model.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/solvers/setup.h"
 

@@ -2,6 +2,7 @@
 // pages (analysis_report.cc), their figures and files (study.cc). Internal to the study.
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <string>
@@ -11,7 +12,8 @@
 #include "coupling/averaging/average.h"
 #include "coupling/heap/base_shape.h"
 #include "coupling/heap/slip_lines.h"
-#include "coupling/models/models.h"
+#include "coupling/models/evaluate_model.h"
+#include "coupling/result/figure.h"
 #include "coupling/run/study_result.h"
 #include "coupling/studies/wedge/page.h"
 #include "coupling/studies/wedge/setup.h"
@@ -87,5 +89,25 @@ class WedgeAnalysis {
   bool mapped_ = false;  ///< combinations are studied; heaps without equilibrium are entries
   std::vector<WedgeMember> members_;
 };
+
+struct WedgeFacts {
+  const WedgeMember& member;
+  double unit = 1;    ///< rho g h, N/m
+  double height = 1;  ///< m
+};
+/// "wedge.LABEL." comes before their keys.
+const std::vector<RunFigure<WedgeFacts>>& wedge_member_rows();
+
+/// Of all heaps of a case.
+struct WedgeCounts {
+  std::int64_t heaps = 0, equilibria = 0;
+  std::map<std::string, std::int64_t> words = {};  ///< by the shape of the base's pressure
+
+  std::int64_t of(const std::string& word) const {
+    const auto at = words.find(word);
+    return at == words.end() ? 0 : at->second;
+  }
+};
+const std::vector<RunFigure<WedgeCounts>>& wedge_rows();
 
 }  // namespace grainfield::coupling

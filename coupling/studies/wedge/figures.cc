@@ -1,5 +1,4 @@
-#include "coupling/studies/wedge/figures.h"
-
+#include "coupling/studies/wedge/analysis.h"
 #include "coupling/studies/wedge/keys.h"
 
 namespace grainfield::coupling {

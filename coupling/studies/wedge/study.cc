@@ -9,10 +9,10 @@
 #include <cmath>
 
 #include "coupling/models/model_record.h"
-#include "coupling/output/triangles_vtu.h"
+#include "coupling/result/csv.h"
+#include "coupling/store/vtu.h"
 #include "coupling/studies/point_load/page.h"
 #include "coupling/studies/wedge/analysis.h"
-#include "coupling/studies/wedge/figures.h"
 #include "coupling/studies/wedge/keys.h"
 
 namespace grainfield::coupling {
@@ -98,9 +98,10 @@ void WedgeAnalysis::summarize(StudyResult& out) const {
 
 void WedgeAnalysis::add_files(StudyResult& out) const {
   const Table heaps = table();
-  std::string csv = fmt::format("{}\n", fmt::join(heaps.header, ";"));
-  for (const auto& row : heaps.rows) csv += fmt::format("{}\n", fmt::join(row, ";"));
-  out.texts.emplace_back("heaps.csv", csv);
+  Csv csv;
+  csv.row(heaps.header);
+  for (const auto& row : heaps.rows) csv.row(row);
+  out.texts.emplace_back("heaps.csv", csv.text());
   for (const WedgeMember& m : members_) {
     if (!m.failed.empty()) continue;
     Field field = model_field(m.choice, facts_, grid_, m.map, kWedgeColumns, kWedgeRows);

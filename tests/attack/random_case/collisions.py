@@ -163,8 +163,7 @@ def check_soft(run):
     stiffness = weight / (v[f"{part}.softness"] * 2 * r)
     for states in run.groups.values():
         for p in states.values():
-            soft = p.attributes.get("run_switch:soft_grains")
-            soft = np.array(soft.split(), int) if soft else np.ones(p.size, int)
+            soft = p.tables["soft"]["grains"].astype(int) if "soft" in p.tables else np.ones(p.size, int)
             for k in range(len(p.i)):
                 i, j = p.i[k], p.j[k]
                 what = f"{p.name} contact {i} {j}"

@@ -12,6 +12,8 @@ class Packing:
         g, c, w = group["grains"], group["contacts"], group["walls"]
         self.columns = {f"{part}/{name}": np.array(group[part][name])
                         for part in ("grains", "contacts", "walls") for name in group[part]}
+        self.tables = {name: {column: np.array(data) for column, data in table.items()}
+                       for name, table in group.get("tables", {}).items()}
         n = g["id"].shape[0]
         self.position, self.velocity = np.array(g["position"]), np.array(g["velocity"])
         self.radius, self.mass = np.array(g["radius"]), np.array(g["mass"])

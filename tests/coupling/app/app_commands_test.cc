@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "tests/coupling/program.h"
 
@@ -170,7 +170,7 @@ TEST(Commands, RunAverageCompareInfo) {
   EXPECT_THAT(run.out, HasSubstr("report: " + (folder / "out/report.html")));
   for (const char* name :
        {"summary.json", "profiles.csv", "profiles.md", "profiles.tex", "fields.h5", "fields.xdmf",
-        "snapshots.h5", "grains_loaded.vtu", "report.html", "case.toml"}) {
+        "snapshots.h5", "states/grains_loaded.vtu", "report.html", "case.toml"}) {
     EXPECT_TRUE(testing::fs::exists(folder / ("out/" + std::string(name)))) << name;
   }
   EXPECT_FALSE(testing::fs::exists(folder / "out/checkpoint"));

@@ -4,7 +4,7 @@
 
 #include "coupling/app/list_words.h"
 #include "coupling/models/parse_choices.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "tests/coupling/program.h"
 
 namespace grainfield::coupling {

@@ -6,7 +6,7 @@
 
 #include "continuum/model.h"
 #include "continuum/progress.h"
-#include "coupling/app/progress_text.h"
+#include "coupling/app/progress_line.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -1,6 +1,6 @@
 // The lock of a folder where the file system knows no locks, and what is said while its holder has
 // not yet written its name.
-#include "coupling/system/file_lock.h"
+#include "coupling/base/file_lock.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>

@@ -12,8 +12,8 @@
 
 #include "continuum/number.h"
 #include "coupling/case/case.h"
-#include "coupling/files/measured_field.h"
-#include "coupling/output/field_csv.h"
+#include "coupling/result/field_file.h"
+#include "coupling/tasks/measured_field.h"
 #include "dem/snapshot/number.h"
 #include "tests/coupling/program.h"
 

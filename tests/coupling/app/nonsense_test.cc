@@ -6,8 +6,8 @@
 
 #include <set>
 
-#include "coupling/files/average_files.h"
 #include "coupling/models/subject.h"
+#include "coupling/tasks/average_task.h"
 #include "tests/coupling/check_scene.h"
 
 namespace grainfield::coupling {

@@ -1,4 +1,4 @@
-#include "coupling/system/printable.h"
+#include "coupling/base/printable.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // What signals do to a program that watches them: every test is a child process of its own.
-#include "coupling/system/signals.h"
+#include "coupling/base/signals.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -12,7 +12,7 @@
 #include <memory>
 #include <thread>
 
-#include "coupling/output/atomic_file.h"
+#include "coupling/store/atomic_file.h"
 #include "tests/coupling/program.h"
 
 namespace grainfield::coupling {

@@ -8,7 +8,7 @@
 
 #include "coupling/averaging/average.h"
 #include "coupling/import/import.h"
-#include "coupling/output/vtu.h"
+#include "coupling/store/vtu.h"
 #include "coupling/strain/motion.h"
 #include "coupling/structure/force_chains.h"
 #include "dem/snapshot/displacements.h"

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "coupling/averaging/layer.h"
-#include "coupling/files/average_files.h"
+#include "coupling/tasks/average_task.h"
 #include "tests/coupling/lattice_layer_scene.h"
 #include "tests/coupling/program.h"
 
@@ -66,8 +66,8 @@ AverageRequest request_of(const dem::Snapshot& s, const std::string& frame = "la
 void expect_same(const dem::Snapshot& one, const dem::Snapshot& other, const std::string& up = "") {
   AverageRequest asked = request_of(other);
   asked.up = up;
-  const Field a = average_files(request_of(one)).front().second;
-  const Field b = average_files(asked).front().second;
+  const Field a = run_average(request_of(one)).front().second;
+  const Field b = run_average(asked).front().second;
   EXPECT_TRUE(a.points.isApprox(b.points, 1e-12));
   for (const Column& column : a.columns) {
     if (column.name.find("sigma") == std::string::npos && column.name != "volume_fraction")
@@ -103,7 +103,7 @@ TEST(Upright, LoadsCountAlongGravity) {
     AverageRequest request = request_of(after, frame);
     request.response = true;
     request.snapshots.push_back({"x", "unloaded", std::make_shared<const dem::Snapshot>(before)});
-    return average_files(request, nullptr, &warnings).front().second;
+    return run_average(request, nullptr, &warnings).front().second;
   };
   const std::array<int, 3> to{0, 2, 1}, sign{1, -1, 1};
   for (const char* frame : {"layer", "packing"}) {
@@ -120,7 +120,7 @@ TEST(Upright, WhatNobodySaysIsAskedFor) {
   s.gravity = {0, -5, -8};
   const auto refusal = [](const AverageRequest& request) -> std::string {
     try {
-      average_files(request);
+      run_average(request);
     } catch (const std::invalid_argument& e) {
       return e.what();
     }
@@ -137,7 +137,7 @@ TEST(Upright, WhatNobodySaysIsAskedFor) {
   EXPECT_THAT(refusal(asked), HasSubstr("--up: found \"w\", allowed: x, -x, y, -y, z or -z"));
   s.gravity = s.applied_force = {0, 0, 0};
   std::vector<std::string> warnings;
-  average_files(request_of(s), nullptr, &warnings);
+  run_average(request_of(s), nullptr, &warnings);
   EXPECT_THAT(warnings, ElementsAre(HasSubstr("neither gravity nor a load says which way is up; z "
                                               "is taken (--up changes it)")));
   EXPECT_THAT(refusal(request_of(s, "heap")), HasSubstr("has no gravity, and a heap needs it"));

@@ -8,9 +8,9 @@
 #include <regex>
 #include <set>
 
-#include "coupling/files/measured_share.h"
+#include "coupling/base/version.h"
 #include "coupling/heap/pile_frame.h"
-#include "coupling/version.h"
+#include "coupling/tasks/measured_share.h"
 #include "tests/coupling/program.h"
 
 namespace grainfield::coupling {

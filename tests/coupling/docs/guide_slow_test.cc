@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "tests/coupling/guide_scene.h"
 #include "tests/coupling/program.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <pugixml.hpp>
 
-#include "coupling/export/packing_page.h"
-#include "coupling/output/field_io.h"
+#include "coupling/export/forms.h"
+#include "coupling/store/field_io.h"
 #include "dem/snapshot/snapshot.h"
 #include "tests/coupling/program.h"
 

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "coupling/files/measured_field.h"
+#include "coupling/tasks/measured_field.h"
 #include "tests/coupling/program.h"
 
 namespace grainfield::coupling {

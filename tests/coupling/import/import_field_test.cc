@@ -8,8 +8,8 @@
 #include <regex>
 
 #include "continuum/closed/osl.h"
-#include "coupling/output/field_io.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
+#include "coupling/store/field_io.h"
 #include "dem/random/random.h"
 #include "tests/coupling/program.h"
 

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <vector>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "tests/coupling/guide_scene.h"
 #include "tests/coupling/program.h"
 

@@ -1,5 +1,9 @@
 // Agreement of many tied values with what they should be: how often chance alone refuses it, and
 // what it finds.
+//
+// The table of docs/statistics.md:
+// build/release/tests/coupling_judge agreement_test --gtest_also_run_disabled_tests
+// --gtest_filter='*ChanceRefuses*:*ManyTrialsFind*' | grep '^|'
 #include "coupling/statistics/agreement.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,8 @@
 // Measures of the comparison and the verdict.
+//
+// The table of docs/statistics.md:
+// build/release/tests/coupling_judge compare_test --gtest_also_run_disabled_tests
+// --gtest_filter='*ManyTrialsSay*' | grep '^|'
 #include "coupling/compare/compare.h"
 
 #include <gmock/gmock.h>
@@ -10,7 +14,7 @@
 #include <random>
 
 #include "coupling/judge/words.h"
-#include "coupling/observe/lines.h"
+#include "coupling/observe/field_observations.h"
 #include "tests/coupling/compare_scene.h"
 
 namespace grainfield::coupling {

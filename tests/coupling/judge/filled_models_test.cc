@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "coupling/models/models.h"
+#include "coupling/models/evaluate_model.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "continuum/closed/osl.h"
-#include "coupling/output/field_io.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
+#include "coupling/store/field_io.h"
 #include "tests/coupling/import_scene.h"
 #include "tests/coupling/program.h"
 #include "tests/coupling/stressed_heap.h"

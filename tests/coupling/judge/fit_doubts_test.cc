@@ -8,9 +8,9 @@
 #include <map>
 
 #include "continuum/closed/osl.h"
-#include "coupling/fit/models.h"
+#include "coupling/fit/heap_models.h"
 #include "coupling/import/packing_warnings.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "tests/coupling/import_scene.h"
 #include "tests/coupling/program.h"
 #include "tests/coupling/stressed_heap.h"

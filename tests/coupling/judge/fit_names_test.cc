@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "continuum/settings.h"
+#include "coupling/fit/heap_models.h"
 #include "coupling/fit/layer_models.h"
-#include "coupling/fit/models.h"
-#include "coupling/models/models.h"
+#include "coupling/models/evaluate_model.h"
 #include "coupling/models/parse_choices.h"
 #include "tests/coupling/program.h"
 

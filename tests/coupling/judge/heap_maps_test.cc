@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "continuum/closed/osl.h"
+#include "coupling/fit/ensemble_fit.h"
 #include "coupling/fit/fit_report.h"
 #include "coupling/fit/fit_tables.h"
-#include "coupling/fit/fits.h"
 #include "coupling/observe/setup.h"
 #include "tests/coupling/stressed_heap.h"
 
@@ -53,7 +53,7 @@ TEST(HeapMaps, LinesOfModelsAreFinerThanTheData) {
   ASSERT_LT(rows.size(), static_cast<std::size_t>(kFewPlaces));
   const auto seen = models_at(fits, {"osl", "cantelaube_plus"}, data.points(rows, Eigen::all));
   const auto column = data.components.front() == "sigma_xx" ? 0 : 1;
-  EXPECT_LT((seen[1].col(column) - fit_named(fits.fits, "cantelaube_plus").model(rows)).norm(),
+  EXPECT_LT((seen[1].col(column) - fit_of(fits.fits, "cantelaube_plus").model(rows)).norm(),
             1e-9 * seen[1].col(column).norm());
   for (const Frame& frame : profile_frames(fits, "sigma_yy")) {
     ASSERT_EQ(frame.series.size(), 3U);
@@ -93,7 +93,7 @@ TEST(HeapMaps, TheTrueModelIsTheGrainsWithinTheNoise) {
   ASSERT_GT(inside, 100);
   // As far from the model as on the lines of the fit: the noise, and the measured slope and
   // density.
-  EXPECT_NEAR(std::sqrt(off / all), fit_named(fits.fits, "osl").rel_l2, 0.02);
+  EXPECT_NEAR(std::sqrt(off / all), fit_of(fits.fits, "osl").rel_l2, 0.02);
   EXPECT_LT(std::sqrt(off / all), 0.08);
   EXPECT_GT(std::sqrt(far / all), 0.2);
 }

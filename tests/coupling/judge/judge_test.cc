@@ -12,8 +12,8 @@
 
 #include "coupling/judge/power.h"
 #include "coupling/judge/words.h"
-#include "coupling/output/judgement.h"
-#include "coupling/output/text_table.h"
+#include "coupling/result/judgement.h"
+#include "coupling/result/text_table.h"
 
 namespace grainfield::coupling {
 namespace {

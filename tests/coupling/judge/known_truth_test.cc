@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "coupling/output/field_io.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
+#include "coupling/store/field_io.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "coupling/output/tables.h"
 #include "coupling/report/force_lines.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "tests/coupling/program.h"
 

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "tests/coupling/program.h"
 
 namespace grainfield::coupling {

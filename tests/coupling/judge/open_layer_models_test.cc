@@ -6,7 +6,7 @@
 
 #include "continuum/closed/orthotropic_layer.h"
 #include "continuum/settings.h"
-#include "coupling/fit/fits.h"
+#include "coupling/fit/ensemble_fit.h"
 #include "coupling/fit/open_models.h"
 #include "tests/coupling/layer_fit_scene.h"
 #include "tests/coupling/open_models_scene.h"
@@ -92,11 +92,11 @@ TEST(OpenModels, WavesAreTheRegistrysLayers) {
 }
 
 TEST(OpenModels, OfLayersAreRefused) {
-  EXPECT_THAT(*refused_layer_model("boussinesq:nu=free"), HasSubstr("it is a model of space"));
-  EXPECT_THAT(*refused_layer_model("layer:dim=3"), HasSubstr("dim = 3: the fit takes it"));
-  EXPECT_THAT(*refused_layer_model("layer:h=free"), HasSubstr("the fit takes it from the data"));
-  EXPECT_THAT(*refused_layer_model("osl:mu=free"), HasSubstr("no model of a body under a load"));
-  EXPECT_EQ(refused_layer_model("layer:base=rough,nu=free"), "");
+  EXPECT_THAT(check_layer_model("boussinesq:nu=free").why, HasSubstr("it is a model of space"));
+  EXPECT_THAT(check_layer_model("layer:dim=3").why, HasSubstr("dim = 3: the fit takes it"));
+  EXPECT_THAT(check_layer_model("layer:h=free").why, HasSubstr("the fit takes it from the data"));
+  EXPECT_THAT(check_layer_model("osl:mu=free").why, HasSubstr("no model of a body under a load"));
+  EXPECT_EQ(check_layer_model("layer:base=rough,nu=free").is, ModelText::Is::model);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include "coupling/fit/layer_models.h"
 #include "coupling/observe/observations.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "tests/coupling/fit_scene.h"
 #include "tests/coupling/open_models_scene.h"
 #include "tests/coupling/program.h"
@@ -134,13 +134,13 @@ TEST(OpenModels, OfHeapsAreRefused) {
            {"liffman:bend=free", "no model of a heap of weight rho_g"},
            {"x y=osl:mu=free", "found the label 'x y'"},
            {"a=oslo:mu=free", "no model 'oslo'; did you mean 'osl'?"}}) {
-    const auto why = refused_heap_model(text);
-    ASSERT_TRUE(why) << text;
-    EXPECT_THAT(*why, HasSubstr(words)) << text;
+    const ModelText found = check_heap_model(text);
+    ASSERT_EQ(found.is, ModelText::Is::refused) << text;
+    EXPECT_THAT(found.why, HasSubstr(words)) << text;
   }
-  EXPECT_FALSE(refused_heap_model("ols"));
+  EXPECT_EQ(check_heap_model("ols").is, ModelText::Is::no_model);
   for (const char* good : {"osl", "ife", "osl:mu=free", "x=osl:K=free,tau_deg=70"}) {
-    EXPECT_EQ(refused_heap_model(good), "") << good;
+    EXPECT_EQ(check_heap_model(good).is, ModelText::Is::model) << good;
   }
 }
 

@@ -1,6 +1,4 @@
 // Models in space seen through kernels.
-#include "coupling/compare/smooth_space.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <stdexcept>
 
 #include "continuum/model.h"
+#include "coupling/compare/smooth.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "coupling/output/field_io.h"
+#include "coupling/store/field_io.h"
 #include "tests/coupling/averaging_scene.h"
 #include "tests/coupling/program.h"
 

@@ -1,7 +1,7 @@
 // Fields with wrong bytes: each is noticed, or changes nothing.
 #include <gmock/gmock.h>
 
-#include "coupling/output/field_io.h"
+#include "coupling/store/field_io.h"
 #include "dem/image/image.h"
 #include "tests/damaged_files.h"
 

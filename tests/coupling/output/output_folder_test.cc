@@ -1,5 +1,5 @@
 // Folders of results: complete or not at all, one writer at a time, nothing of the user's touched.
-#include "coupling/output/output_folder.h"
+#include "coupling/store/output_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "coupling/output/atomic_file.h"
+#include "coupling/store/atomic_file.h"
 #include "tests/coupling/program.h"
 
 namespace grainfield::coupling {
@@ -67,10 +67,10 @@ TEST(OutputFolder, ResultsOfAnotherStudyGo) {
   testing::fs::create_directory(folder / "out/friction_0.3/mine");
   folder.write("out/friction_0.3/mine/note.txt", "mine");
   const auto gone = publish(folder, {{"summary.json", "new"}, {"profiles.csv", "new"}});
-  EXPECT_EQ(told_of_gone("out", gone),
+  EXPECT_EQ(gone_note("out", gone),
             "out: 3 results of an earlier command are gone: friction_0.3/deep/x.csv, "
             "friction_0.3/summary.json, heaps.csv");
-  EXPECT_EQ(told_of_gone("out", {}), "");
+  EXPECT_EQ(gone_note("out", {}), "");
   EXPECT_EQ(found(folder), (Files{{"summary.json", "new\n"},
                                   {"profiles.csv", "new"},
                                   {"heaps-of-mine.csv", "mine"},

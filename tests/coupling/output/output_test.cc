@@ -13,10 +13,10 @@
 #include <pugixml.hpp>
 #include <sstream>
 
-#include "coupling/output/atomic_file.h"
-#include "coupling/output/field_io.h"
-#include "coupling/output/tables.h"
-#include "coupling/output/vtu.h"
+#include "coupling/result/tables.h"
+#include "coupling/store/atomic_file.h"
+#include "coupling/store/field_io.h"
+#include "coupling/store/vtu.h"
 #include "dem/snapshot/hdf5_file.h"
 #include "tests/coupling/averaging_scene.h"
 #include "tests/coupling/heap_scene.h"

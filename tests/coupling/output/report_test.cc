@@ -18,7 +18,7 @@
 #include <thread>
 
 #include "coupling/averaging/average.h"
-#include "coupling/report/gnuplot.h"
+#include "coupling/report/drawing.h"
 #include "coupling/studies/pile/page.h"
 #include "coupling/studies/point_load/page.h"
 #include "tests/coupling/averaging_scene.h"
@@ -293,6 +293,23 @@ TEST_F(ReportTest, TheColourBoxIsAsHighAsAMap) {
     EXPECT_NEAR(number("size screen 0.018, screen ", box), top - bottom, 2e-4) << count;
     EXPECT_NEAR(number(", screen ", box), bottom, 2e-4) << count;
   }
+}
+
+// Maps beside each other have room for a short title and for the numbers of their axes.
+TEST_F(ReportTest, TitlesOfNarrowMapsAreBroken) {
+  Map map{"", 2, 2, grid_points(0, 1, 2, 0, 1, 2), Eigen::VectorXd::Ones(4)};
+  std::vector<Map> all;
+  for (const char* title : {"grains", "predicted_smooth=transverse_layer", "grains - layer"}) {
+    map.title = title;
+    all.push_back(map);
+  }
+  const std::string program = maps("m", "x", "height", "v", all).program;
+  EXPECT_THAT(program, HasSubstr("set title \"predicted_smooth=\\ntransverse_layer\" "));
+  EXPECT_THAT(program, HasSubstr("set title \"grains - layer\" "));
+  EXPECT_EQ(program.find("set ylabel \"height\""), program.rfind("set ylabel \"height\""));
+  // One map has the whole width.
+  EXPECT_THAT(maps("m", "x", "height", "v", {all[1]}).program,
+              HasSubstr("set title \"predicted_smooth=transverse_layer\" "));
 }
 
 TEST_F(ReportTest, BrokenAndEndlessProgramsAreReported) {

@@ -6,10 +6,10 @@
 
 #include <csignal>
 
+#include "coupling/base/signals.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/studies/point_load/simulation.h"
-#include "coupling/system/signals.h"
 #include "dem/cannot_read_now.h"
 #include "dem/storage_failed.h"
 #include "tests/coupling/program.h"

@@ -54,6 +54,32 @@ TEST(MemberProfiles, AreDrawnInEachMembersOwnUnits) {
   EXPECT_NE(first, second);
 }
 
+// Both members are nearest to one model, which is drawn once; the other model is not drawn.
+TEST(MemberProfiles, HaveTheNearestModelOfAMember) {
+  Case value;
+  value.sweep.key = "load.force";
+  value.sweep.values = {"3", "300"};
+  std::vector<StudyResult> results;
+  for (const double load : {3.0, 300.0}) {
+    Profile p;
+    p.name = p.key = "base";
+    p.x = Eigen::Vector3d(-0.1, 0, 0.1);
+    p.mean = load / 0.2 * Eigen::Vector3d(0.25, 0.75, 0.25);
+    ModelProfiles near, far;
+    near.key = "rough", near.label = "rough=layer (base=rough)", near.values = {0.8 * p.mean};
+    far.key = far.label = "flamant", far.values = {0.5 * p.mean};
+    StudyResult one;
+    one.comparison = compare({p}, {far, near}, scale_of_load(load, 0.2));
+    one.comparison.judgement.best = "rough";
+    results.push_back(std::move(one));
+  }
+  const std::string program = member_profiles(value, {{"a", value}, {"b", value}}, results).program;
+  EXPECT_THAT(program, HasSubstr("rough (load.force = 3)"));
+  EXPECT_THAT(program, HasSubstr("0 0.6"));
+  EXPECT_THAT(program, ::testing::Not(HasSubstr("rough (load.force = 300)")));
+  EXPECT_THAT(program, ::testing::Not(HasSubstr("flamant")));
+}
+
 // Student's t with 4 degrees of freedom has a closed distribution.
 TEST(Welch, ClosedFormForEqualSpreads) {
   for (const double t : {0.1, 1.0, 2.776, 8.0}) {

@@ -6,8 +6,8 @@
 
 #include "coupling/case/declare.h"
 #include "coupling/case/study.h"
-#include "coupling/output/tables.h"
 #include "coupling/report/judgement.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/ranks.h"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 #include <numbers>
-#include <sstream>
+#include <stdexcept>
 
 #include "coupling/studies/pair/simulation.h"
 
@@ -17,10 +17,14 @@ RunResult result_of(const PairSetup& setup) {
 }
 
 std::vector<double> column(const RunResult& result, const std::string& name) {
-  std::istringstream words(result.snapshots.front().second.attributes.at("pair:" + name));
-  std::vector<double> out;
-  for (double x; words >> x;) out.push_back(x);
-  return out;
+  const auto& tables = result.snapshots.front().second.tables;
+  for (const char* table : {"pair", "loops"}) {
+    if (!tables.contains(table)) continue;
+    for (const NumberColumn& c : tables.at(table)) {
+      if (c.name == name) return c.values;
+    }
+  }
+  throw std::out_of_range(name);
 }
 
 PairSetup linear_path(const char* path, const char* shape) {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "coupling/fit/fits.h"
+#include "coupling/fit/ensemble_fit.h"
 #include "tests/coupling/fit_scene.h"
 
 namespace grainfield::coupling {

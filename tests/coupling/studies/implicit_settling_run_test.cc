@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "dem/snapshot/snapshot.h"
 #include "tests/coupling/check_scene.h"

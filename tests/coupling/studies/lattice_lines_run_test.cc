@@ -2,7 +2,7 @@
 // force where rows touch, and the dip of a tent that such rows take away.
 #include <gtest/gtest.h>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "tests/coupling/program.h"
 #include "tests/coupling/run_scene.h"
 #include "tests/paths.h"

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "coupling/output/field_io.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/store/field_io.h"
 #include "tests/coupling/program.h"
 #include "tests/coupling/run_scene.h"
 
@@ -55,7 +55,8 @@ TEST(LatticePileRun, EquilateralPileMeetsTheClosedForm) {
   const Field base = read_field(folder / "out/fields.h5", "base");
   EXPECT_EQ(base.find("N")->value.size(), 9);
   EXPECT_NEAR(base.find("H_lattice")->value.sum(), 0, 1e-12);
-  for (const char* name : {"report.html", "snapshots.h5", "grains_pile.vtu", "profiles.md"}) {
+  for (const char* name :
+       {"report.html", "snapshots.h5", "states/grains_pile.vtu", "profiles.md"}) {
     EXPECT_TRUE(testing::fs::exists(folder / ("out/" + std::string(name)))) << name;
   }
   EXPECT_THAT(testing::read_text(folder / "out/report.html"), HasSubstr("45 disks in 9 rows"));

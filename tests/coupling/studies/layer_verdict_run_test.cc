@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "coupling/case/case.h"
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "tests/coupling/layer_verdict_case.h"
 #include "tests/coupling/program.h"
 

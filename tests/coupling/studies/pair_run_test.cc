@@ -6,7 +6,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "coupling/studies/pair/closed_forms.h"
 #include "dem/laws/restitution.h"
@@ -87,7 +87,7 @@ TEST(PairRun, LinearImpactIsTheClosedForm) {
                             "Normal restitution against speed", "closed form"}) {
     EXPECT_THAT(report, HasSubstr(title));
   }
-  for (const char* name : {"snapshots.h5", "case.toml", "grains_state_00.vtu"}) {
+  for (const char* name : {"snapshots.h5", "case.toml", "states/grains_state_00.vtu"}) {
     EXPECT_TRUE(testing::fs::exists(folder / ("out/" + std::string(name)))) << name;
   }
 }

@@ -7,7 +7,6 @@
 #include <variant>
 
 #include "coupling/averaging/base.h"
-#include "coupling/files/fit_files.h"
 #include "coupling/heap/dip.h"
 #include "coupling/heap/pile_frame.h"
 #include "coupling/heap/setup.h"
@@ -19,6 +18,7 @@
 #include "coupling/statistics/spread.h"
 #include "coupling/studies/pile/pile_ensemble.h"
 #include "coupling/studies/pile/study.h"
+#include "coupling/tasks/fit_task.h"
 #include "tests/coupling/heap_scene.h"
 #include "tests/coupling/program.h"
 
@@ -106,7 +106,7 @@ TEST(PileFrame, MeasuresALatticeHeap) {
 
 TEST(PileFrame, PiecesAndLayersAreNoHeaps) {
   const dem::Snapshot heap = test::lattice_heap(20);
-  EXPECT_EQ(pile_frame(heap).no_heap(0), "");
+  EXPECT_EQ(pile_frame(heap).why_not_a_heap(0), "");
   EXPECT_DOUBLE_EQ(pile_frame(heap).largest_piece, 1);
   // In a wedge of half base b the mass beyond x is that of (1 - x/b)^2.
   const PileFrame f = pile_frame(heap);
@@ -118,11 +118,12 @@ TEST(PileFrame, PiecesAndLayersAreNoHeaps) {
   two.contacts.clear();
   const PileFrame parted = pile_frame(two);
   EXPECT_LT(parted.largest_piece, 0.6);
-  EXPECT_THAT(parted.no_heap(2), HasSubstr("realization 2: it lies in pieces, the largest with 5"));
+  EXPECT_THAT(parted.why_not_a_heap(2),
+              HasSubstr("realization 2: it lies in pieces, the largest with 5"));
   PileFrame layer = f;
   layer.repose_left_deg = 1;
   layer.repose_right_deg = 2;
-  EXPECT_EQ(layer.no_heap(1), "realization 1: flanks of 1.0 and 2.0 degrees, a layer");
+  EXPECT_EQ(layer.why_not_a_heap(1), "realization 1: flanks of 1.0 and 2.0 degrees, a layer");
 }
 
 // One pile of several that fell apart does not widen the pictures of all.
@@ -132,7 +133,7 @@ TEST(PileAnalysis, PicturesEndWithTheHeap) {
   dem::Snapshot pieces = heap;
   pieces.contacts.clear();
   for (dem::Grain& grain : pieces.grains) grain.position.x() *= 5;
-  ASSERT_NE(pile_frame(pieces).no_heap(1), "");
+  ASSERT_NE(pile_frame(pieces).why_not_a_heap(1), "");
   const Case value = pile_case();
   const auto reach = [&](const std::vector<dem::Snapshot>& heaps) {
     return PileEnsemble(value, files_of(folder, heaps), 1).x.maxCoeff();
@@ -376,7 +377,7 @@ TEST(PileAnalysis, FitsAreThoseOfTheCommand) {
   request.inputs = files;
   request.models = fit.models;
   request.overrides = {"fit.bootstrap=0"};
-  const FitOutcome command = fit_files(request);
+  const FitOutcome command = run_fit(request);
   const auto text = [](const auto& figure) {  // nan is the same as nan
     return std::visit([](const auto& held) { return fmt::format("{}", held); }, figure);
   };

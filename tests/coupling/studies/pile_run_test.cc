@@ -8,7 +8,7 @@
 #include <random>
 #include <sstream>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "dem/snapshot/snapshot.h"
 #include "tests/coupling/program.h"
@@ -73,8 +73,8 @@ TEST(PileRun, LeavesEverything) {
   EXPECT_THAT(run.out, HasSubstr("hether there is a pressure dip needs at least 3 realizations"));
   for (const char* name :
        {"summary.json", "profiles.csv", "profiles.md", "profiles.tex", "fields.h5", "fields.xdmf",
-        "snapshots.h5", "grains_pile.vtu", "chains_pile.vtu", "grains_gravity_8.829.vtu",
-        "report.html", "case.toml"}) {
+        "snapshots.h5", "states/grains_pile.vtu", "states/chains_pile.vtu",
+        "states/grains_gravity_8.829.vtu", "report.html", "case.toml"}) {
     EXPECT_TRUE(testing::fs::exists(folder / ("out/" + std::string(name)))) << name;
   }
   EXPECT_FALSE(testing::fs::exists(folder / "out/checkpoint"));

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "dem/snapshot/snapshot.h"
 #include "tests/coupling/check_scene.h"
@@ -302,8 +302,9 @@ TEST(SampleRun, DisksInACell) {
               0.5 * (*std::max_element(q.begin(), q.begin() + 5) +
                      *std::max_element(q.begin() + 5, q.end())),
               1e-8);
-  for (const char* name : {"report.html", "grains_state_004.vtu", "contacts_state_000.vtu",
-                           "grains.pvd", "snapshots.h5", "case.toml"}) {
+  for (const char* name :
+       {"report.html", "states/grains_state_004.vtu", "states/contacts_state_000.vtu", "grains.pvd",
+        "snapshots.h5", "case.toml"}) {
     EXPECT_TRUE(testing::fs::exists(folder / ("out/" + std::string(name)))) << name;
   }
   EXPECT_FALSE(testing::fs::exists(folder / "out/profiles.csv"));
@@ -332,7 +333,8 @@ TEST(SampleRun, SpheresInACell) {
   EXPECT_LT(number(ran.summary, "sample.energy_balance_error"), 1e-3);
   EXPECT_GT(ran.states.at("sigma_xz_Pa").back(), 0);
   EXPECT_THAT(testing::read_text(folder / "out/report.html"), HasSubstr("cuts out of the spheres"));
-  EXPECT_THAT(testing::read_text(folder / "out/grains_state_003.vtu"), HasSubstr("rotation"));
+  EXPECT_THAT(testing::read_text(folder / "out/states/grains_state_003.vtu"),
+              HasSubstr("rotation"));
 }
 
 class SampleBits : public ::testing::TestWithParam<const char*> {};

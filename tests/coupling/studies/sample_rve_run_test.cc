@@ -1,7 +1,7 @@
 // RVEs of small samples and their unloading, through the real program.
 #include <gmock/gmock.h>
 
-#include "coupling/output/tables.h"
+#include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
 #include "tests/coupling/check_scene.h"
 #include "tests/coupling/reliability_process.h"

@@ -10,7 +10,7 @@
 #include "coupling/heap/base_shape.h"
 #include "coupling/heap/slip_lines.h"
 #include "coupling/judge/words.h"
-#include "coupling/output/triangles_vtu.h"
+#include "coupling/store/vtu.h"
 #include "tests/coupling/shipped.h"
 
 using namespace grainfield::coupling;
@@ -127,7 +127,7 @@ TEST(WedgeRun, HeapsBesideTheClosedWedges) {
   EXPECT_THAT(file("wedge_associated.vtu"), HasSubstr("plastic_shear"));
   EXPECT_THAT(file("slip_lines_associated.vtu"), HasSubstr("Name=\"line\""));
   EXPECT_THAT(file("core_associated.vtu"), HasSubstr("NumberOfCells=\"2\""));
-  EXPECT_THAT(file("heaps.csv"), HasSubstr("associated;0."));
+  EXPECT_THAT(file("heaps.csv"), HasSubstr("associated,0."));
 }
 
 // docs/cases/wedges.md: the history moves the pressure by one per cent, soft

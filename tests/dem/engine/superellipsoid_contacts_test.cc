@@ -1,4 +1,8 @@
 // Superellipsoids in the engine: beside spheres, on walls, energy, the same bits, cells, snapshots.
+//
+// The gas of docs/contact-laws.md:
+// build/release/tests/dem_engine superellipsoid_contacts_test --gtest_filter='*Gas*'
+// --gtest_output=xml:gas.xml
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 // Fields in HDF5, up to the lines that `compare` and `fit` take from them.
-#include "coupling/observe/lines.h"
-#include "coupling/output/field_io.h"
+#include "coupling/observe/field_observations.h"
+#include "coupling/store/field_io.h"
 #include "tests/fuzz/target.h"
 
 namespace grainfield::fuzz {

@@ -1,6 +1,6 @@
 // Measured stresses, as `import-field` reads them: of heaps and layers, in two and three
 // dimensions.
-#include "coupling/files/measured_field.h"
+#include "coupling/tasks/measured_field.h"
 #include "tests/fuzz/target.h"
 
 namespace grainfield::fuzz {

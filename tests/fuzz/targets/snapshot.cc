@@ -1,7 +1,7 @@
 // HDF5 files as `info` looks at them, and what every command asks of a snapshot first.
 #include "dem/snapshot/snapshot.h"
 
-#include "coupling/app/cell_text.h"
+#include "coupling/app/terminal.h"
 #include "coupling/import/import.h"
 #include "coupling/import/packing_warnings.h"
 #include "tests/fuzz/target.h"

@@ -1,7 +1,7 @@
 // Options that are little languages of their own, one a line: walls, periodic axes, columns, grids.
-#include "coupling/files/places.h"
 #include "coupling/import/format.h"
 #include "coupling/import/import.h"
+#include "coupling/tasks/placement.h"
 #include "tests/fuzz/target.h"
 
 namespace grainfield::fuzz {
