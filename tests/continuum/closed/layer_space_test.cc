@@ -106,7 +106,7 @@ TEST(LayerInSpace, CarriesTheLoadAndTendsToTheHalfSpace) {
 TEST(LayerInSpace, ManyPointsAreAsTheyAreByThemselves) {
   std::mt19937 bits(4);
   std::uniform_real_distribution<double> side(-1.7, 1.7), height(-1, 0);
-  Points many(4000, 3);
+  Points many(1800, 3);
   for (auto point : many.rowwise()) point << side(bits), side(bits), height(bits);
   many.row(0) << 0, 0, -1;
   for (const char* base : {"smooth", "rough"}) {
