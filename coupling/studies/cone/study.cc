@@ -248,8 +248,9 @@ Study cone_study() {
   out.make_run = make_cone;
   out.foresee = foresee_cones;
   out.left_unused = [](const Case& value) { return unused_runs(value, kConeStates, "cone"); };
-  out.longest_part = [](const Case&, const dem::Outlook& outlook) -> LongestPart {
+  out.longest_part = [](const Case& value, const dem::Outlook& outlook) -> LongestPart {
     if (outlook.time_key != "cone.rate") return {};
+    if (!setup_of_cone(value).sleep.on) return {"pouring", ""};
     return {"pouring", "; sleeping makes it less"};
   };
   out.analyse = analyse_cones;

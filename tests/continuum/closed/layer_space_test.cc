@@ -101,3 +101,22 @@ TEST(LayerInSpace, CarriesTheLoadAndTendsToTheHalfSpace) {
   EXPECT_TRUE(std::isnan(at(*deep, 0, 0, 0.1)[2]));
   EXPECT_TRUE(std::isnan(at(*layer(0.25, "rough"), 0, 0, -1.1)[2]));
 }
+
+// The stress of many points is interpolated, that of few is not.
+TEST(LayerInSpace, ManyPointsAreAsTheyAreByThemselves) {
+  std::mt19937 bits(4);
+  std::uniform_real_distribution<double> side(-1.7, 1.7), height(-1, 0);
+  Points many(1800, 3);
+  for (auto point : many.rowwise()) point << side(bits), side(bits), height(bits);
+  many.row(0) << 0, 0, -1;
+  for (const char* base : {"smooth", "rough"}) {
+    const auto model = layer(0.3, base);
+    const Stresses together = model->stress(many);
+    Stresses apart(many.rows(), 6);
+    constexpr int kFew = 200;
+    for (int k = 0; k < many.rows(); k += kFew)
+      apart.middleRows(k, kFew) = model->stress(many.middleRows(k, kFew));
+    // The base adds up to 0.6; rounding of a sum over 500 waves is 1e-14.
+    EXPECT_LT((together - apart).cwiseAbs().maxCoeff(), 1e-12) << base;
+  }
+}

@@ -172,5 +172,25 @@ TEST(TransverseLayer, ItsDomainAndItsSettingsAreChecked) {
               HasSubstr("G_v = 10000 is too large"));
 }
 
+// The stress of many points is interpolated, that of few is not.
+TEST(TransverseLayer, ManyPointsAreAsTheyAreByThemselves) {
+  Random random(5);
+  Points many(3000, 3);
+  for (auto point : many.rowwise())
+    point << random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 0);
+  constexpr int kFew = 200, kTrials = 8;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const TransverseModuli m = random_moduli(random);
+    const auto model =
+        make_model("transverse_layer", settings_of(m, trial % 2 == 0 ? "rough" : "smooth"));
+    const Stresses together = model->stress(many);
+    Stresses apart(many.rows(), 6);
+    for (int k = 0; k < many.rows(); k += kFew)
+      apart.middleRows(k, kFew) = model->stress(many.middleRows(k, kFew));
+    const double size = apart.bottomRows(kFew).cwiseAbs().maxCoeff();
+    EXPECT_LT((together - apart).cwiseAbs().maxCoeff(), 1e-11 * size) << trial;
+  }
+}
+
 }  // namespace
 }  // namespace grainfield::continuum
