@@ -34,6 +34,8 @@ constexpr double kDecay = 34, kPanelPhase = 6, kPanelWidth = 2;
 constexpr double kLeastRatio = -0.99;
 // Of the decay: up to here the singularity stays a depth away from all depths of the layer.
 constexpr double kMostOscillation = 0.5;
+// Of the fast wave's decay: from here on the nodes of about_axis resolve the depths to round-off.
+constexpr double kLeastSlow = 0.5;
 
 class TransverseLayer : public Model {
  public:
@@ -43,7 +45,10 @@ class TransverseLayer : public Model {
         nu_h_(moduli.nu_h),
         across_(moduli.nu_v * moduli.E_h / moduli.E_v),
         waves_(orthotropy(moduli.plane_strain()), moduli.plane_strain().nu_xy, rough),
-        half_space_(load, moduli) {}
+        half_space_(load, moduli) {
+    const Orthotropy plane = orthotropy(moduli.plane_strain());
+    mean_decay_ = std::sqrt((plane.r + std::sqrt(plane.t)) / 2);
+  }
 
   Stresses stress(const Points& points) override {
     Stresses out = Stresses::Constant(points.rows(), 6, kNan);
@@ -63,8 +68,11 @@ class TransverseLayer : public Model {
     const auto field = [this](const Eigen::ArrayXd& r, const Eigen::ArrayXd& d) {
       return of_base(r, d);
     };
-    // Waves that oscillate bring the singularity near the depths of the layer.
-    const bool smooth = waves_.oscillation() <= kMostOscillation * waves_.decay();
+    // A slow wave that the base sends back as a fast one brings the singularity to the depth
+    // 1 + slow/fast, and waves that oscillate bring it near, too.
+    const double slow = waves_.decay(), fast = 2 * mean_decay_ - slow;
+    const bool smooth =
+        waves_.oscillation() <= kMostOscillation * slow && slow >= kLeastSlow * fast;
     const Eigen::ArrayX4d base =
         smooth ? about_axis(field, std::min(1.0, waves_.decay()), radius, share)
                : of_base(radius, share);
@@ -113,7 +121,7 @@ class TransverseLayer : public Model {
     return sum * (load_ / (2 * std::numbers::pi * h_ * h_));
   }
 
-  double load_, h_, nu_h_, across_;
+  double load_, h_, nu_h_, across_, mean_decay_ = 1;
   OrthotropicWaves waves_;
   TransverseHalfSpace half_space_;
 };

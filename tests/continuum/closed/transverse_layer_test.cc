@@ -175,12 +175,19 @@ TEST(TransverseLayer, ItsDomainAndItsSettingsAreChecked) {
 // The stress of many points is interpolated, that of few is not.
 TEST(TransverseLayer, ManyPointsAreAsTheyAreByThemselves) {
   Random random(5);
-  Points many(3000, 3);
+  Points many(1400, 3);
   for (auto point : many.rowwise())
     point << random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 0);
-  constexpr int kFew = 200, kTrials = 8;
+  constexpr int kFew = 200, kTrials = 3;
   for (int trial = 0; trial < kTrials; ++trial) {
-    const TransverseModuli m = random_moduli(random);
+    TransverseModuli m = random_moduli(random);
+    if (trial == 0) {  // of a layer of spheres: interpolated for certain
+      m.E_h = 1.8;
+      m.E_v = 2.2;
+      m.nu_h = 0.217;
+      m.nu_v = 0.272;
+      m.G_v = 0.83;
+    }
     const auto model =
         make_model("transverse_layer", settings_of(m, trial % 2 == 0 ? "rough" : "smooth"));
     const Stresses together = model->stress(many);
