@@ -6,6 +6,7 @@
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/weights.h"
+#include "coupling/tasks/average_task.h"
 #include "tests/coupling/settled_scene.h"
 
 namespace grainfield::coupling {

@@ -80,8 +80,12 @@ TEST(NumberTables, OfAFileOfVersion090HaveItsNumbers) {
   ASSERT_EQ(table.size(), 10U);
   for (const NumberColumn& column : table) {
     ASSERT_EQ(column.values.size(), 25U) << column.name;
-    if (column.name == "time") EXPECT_NEAR(column.values.back(), 7.53982237, 1e-8);
-    if (column.name == "spread") EXPECT_NEAR(column.values[1], 0.000993551246, 1e-12);
+    if (column.name == "time") {
+      EXPECT_NEAR(column.values.back(), 7.53982237, 1e-8);
+    }
+    if (column.name == "spread") {
+      EXPECT_NEAR(column.values[1], 0.000993551246, 1e-12);
+    }
   }
 }
 
