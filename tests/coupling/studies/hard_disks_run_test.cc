@@ -57,7 +57,8 @@ TEST(HardDisksRun, PressureIsHendersons) {
   EXPECT_THAT(table,
               HasSubstr("fraction,compressibility,compressibility_error,theory,virial_series"));
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
-  for (const char* name : {"snapshots.h5", "grains_fraction_0.2.vtu", "grains_fraction_0.5.vtu"}) {
+  for (const char* name :
+       {"snapshots.h5", "states/grains_fraction_0.2.vtu", "states/grains_fraction_0.5.vtu"}) {
     EXPECT_TRUE(testing::fs::exists(folder / ("out/" + std::string(name)))) << name;
   }
 }

@@ -113,7 +113,8 @@ TEST(SpaceLoadRun, LeavesFiguresFieldsAndAReport) {
   EXPECT_THAT(csv, HasSubstr("-sigma_zz"));
   EXPECT_THAT(csv, HasSubstr("simulation_Pa"));
   for (const char* name : {"unloaded", "loaded"}) {
-    EXPECT_TRUE(std::filesystem::exists(folder / (std::string("out/grains_") + name + ".vtu")))
+    EXPECT_TRUE(
+        std::filesystem::exists(folder / (std::string("out/states/grains_") + name + ".vtu")))
         << name;
   }
 }
