@@ -137,7 +137,7 @@ TEST(Cone, HasTheSameBitsOnThreadsAndAfterAResume) {
     auto run = make_cone_run(setup, 3, 1);
     int stops = 0, in_lift = 0;
     while (!run->done()) {
-      run->advance(1777);
+      run->advance(977);
       in_lift += run->progress().phase == "lift" ? 1 : 0;
       run->save(file);
       run = make_cone_run(setup, 3, 2);
