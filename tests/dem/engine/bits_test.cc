@@ -42,6 +42,8 @@ Scene sleeping_pour(std::string name, std::uint64_t hash, Kind kind, IntegratorK
   s.settings.sleep.on = true;
   s.settings.sleep.quiet_time = 5e-3;
   s.settings.sleep.quiet_move = 1e-2;
+  s.settings.sleep.quiet_creep = 0.02;
+  s.settings.sleep.wake_time = 0.02;
   s.steps = how == IntegratorKind::gear ? 24000 : 16000;
   s.walls = walls_of_box(6.2 * kCell);
   s.grains = block(kind, 6, 2, kCell, 5);
@@ -62,10 +64,12 @@ Scene sleeping_pour(std::string name, std::uint64_t hash, Kind kind, IntegratorK
 Scene rough_floor(std::string name, std::uint64_t hash, Kind kind, bool sleep) {
   Scene s = falling(std::move(name), hash, kind, false, IntegratorKind::verlet);
   s.settings.sleep.on = sleep;
+  s.settings.sleep.quiet_time = 5e-3;
   s.settings.sleep.quiet_move = 1e-2;
   s.settings.sleep.quiet_creep = 1;
   s.settings.sleep.quiet_force = 0.2;
   s.settings.sleep.wake_force = 0.3;
+  s.settings.sleep.wake_time = 0.02;
   s.grains[3].rotates = false;
   for (int k = 0; k < 8; ++k) {
     NewGrain g = s.grains[static_cast<std::size_t>(k)];
