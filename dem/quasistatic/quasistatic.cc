@@ -189,8 +189,8 @@ QuasistaticResult relax(const Snapshot& start, const Materials& materials, const
 QuasistaticResult strain(const Snapshot& start, const Materials& materials,
                          const Eigen::Matrix3d& gradient, const QuasistaticSettings& settings) {
   check_settings(settings);
-  check_strained(start);
   check_gradient(gradient);
+  check_strained(start);
   AppliedForce force;
   force.id = start.loaded_grain;
   force.fx = start.applied_force.x();
