@@ -50,7 +50,7 @@ TEST(Block, TablesHaveErrorsOverRealizations) {
   const BlockComparison c = comparison();
   const std::string csv = block_csv(c);
   // At 0.02: differences 3 and 2, mean 2.5, standard error 0.5; grains 25 with sqrt(100/3).
-  EXPECT_THAT(csv, HasSubstr("2,0.02,25,5.7735,27.5,2.5,0.5,5,"));
+  EXPECT_THAT(csv, HasSubstr("2,0.02,25,5.77350269,27.5,2.5,0.5,5,"));
   const std::vector<Section> sections = block_sections(c);
   const Table* leaving = nullptr;
   const Table* stages = nullptr;
