@@ -14,7 +14,7 @@ namespace grainfield::continuum {
 
 /// The number that the whole text is, in any locale, also "nan", "inf", a subnormal one, and 0 for
 /// one too small; nothing for other text, none, or a number too large. As dem reads its own
-/// (dem/snapshot/number.h), of which this module knows nothing.
+/// (dem/shared/number.h), of which this module knows nothing.
 inline std::optional<double> parse_number(std::string_view text) {
   const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
   const char* const end = digits.data() + digits.size();

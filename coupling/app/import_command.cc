@@ -22,7 +22,7 @@
 #include "coupling/store/atomic_file.h"
 #include "coupling/store/field_io.h"
 #include "coupling/store/output_folder.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

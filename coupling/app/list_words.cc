@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

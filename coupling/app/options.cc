@@ -8,7 +8,7 @@
 #include "coupling/app/points_csv.h"
 #include "coupling/base/unit.h"
 #include "coupling/tasks/placement.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

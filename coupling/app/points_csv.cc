@@ -25,7 +25,7 @@
 #include "coupling/base/read_input.h"
 #include "coupling/import/format.h"
 #include "coupling/result/csv.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "dem/heap/reach.h"
+#include "dem/grains/reach.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

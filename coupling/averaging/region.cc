@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "coupling/averaging/clip.h"
+#include "coupling/averaging/columns.h"
 #include "coupling/averaging/extent.h"
 #include "coupling/averaging/layer.h"
-#include "dem/heap/columns.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -162,7 +162,7 @@ void Region::find_roof(const dem::Snapshot& snapshot) {
 
 void Region::find_surface(const dem::Snapshot& snapshot) {
   const double column = 2 * mean_diameter(snapshot), width = right() - left();
-  const std::size_t columns = dem::count_columns(snapshot, 0, left(), right(), column);
+  const std::size_t columns = count_columns(snapshot, 0, left(), right(), column);
   std::vector<const dem::Grain*> top(columns, nullptr);
   for (const dem::Grain& grain : snapshot.grains) {
     if (grain.fixed) continue;

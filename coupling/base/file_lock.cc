@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "coupling/base/printable.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::coupling {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -14,7 +14,7 @@
 #include "coupling/case/study.h"
 #include "coupling/case/units.h"
 #include "dem/shapes/registry.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

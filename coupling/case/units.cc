@@ -6,7 +6,7 @@
 
 #include "coupling/base/unit.h"
 #include "coupling/case/study.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -8,7 +8,7 @@
 #include "coupling/compare/compare.h"
 #include "coupling/fit/fit_tables.h"
 #include "coupling/models/evaluate_model.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 

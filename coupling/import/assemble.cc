@@ -14,11 +14,11 @@
 #include <utility>
 
 #include "dem/shapes/polygon.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/cell_places.h"
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/images.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 

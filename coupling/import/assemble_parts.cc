@@ -10,7 +10,7 @@
 #include "coupling/import/assemble_contacts.h"
 #include "coupling/import/synonyms.h"
 #include "coupling/import/untaken.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -12,8 +12,8 @@
 #include "coupling/import/assemble.h"
 #include "coupling/import/outline_text.h"
 #include "coupling/import/synonyms.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -8,7 +8,7 @@
 #include "continuum/model.h"
 #include "coupling/import/row_text.h"
 #include "coupling/import/table.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

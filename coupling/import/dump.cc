@@ -9,8 +9,8 @@
 
 #include "coupling/import/foreign_kind.h"
 #include "coupling/import/format.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {

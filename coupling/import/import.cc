@@ -14,10 +14,10 @@
 #include "coupling/import/ids_table.h"
 #include "coupling/import/step_names.h"
 #include "coupling/import/steps.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/images.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -6,7 +6,7 @@
 #include <cctype>
 
 #include "coupling/import/row_text.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

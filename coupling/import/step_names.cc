@@ -6,7 +6,7 @@
 #include <cctype>
 #include <stdexcept>
 
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

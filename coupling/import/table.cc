@@ -11,7 +11,7 @@
 #include "continuum/model.h"
 #include "coupling/import/row_text.h"
 #include "coupling/import/synonyms.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -10,7 +10,7 @@
 #include "coupling/import/row_text.h"
 #include "coupling/import/synonyms.h"
 #include "coupling/import/table.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "coupling/base/unit.h"
 #include "coupling/import/row_text.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

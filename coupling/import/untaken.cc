@@ -10,7 +10,7 @@
 #include <regex>
 
 #include "coupling/import/synonyms.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "coupling/import/vtk_arrays.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

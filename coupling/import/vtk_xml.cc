@@ -17,7 +17,7 @@
 
 #include "coupling/import/lines.h"
 #include "coupling/import/vtk_arrays.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

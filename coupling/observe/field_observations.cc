@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "coupling/heap/field_rows.h"
-#include "coupling/heap/heap_field.h"
 #include "coupling/observe/seen_models.h"
 #include "coupling/run/comparison_page.h"
+#include "coupling/specimen/field_rows.h"
+#include "coupling/specimen/heap_field.h"
 #include "dem/snapshot/limits.h"
 
 namespace grainfield::coupling {

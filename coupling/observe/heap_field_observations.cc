@@ -6,10 +6,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "coupling/heap/field_rows.h"
-#include "coupling/heap/heap_field.h"
 #include "coupling/observe/field_observations.h"
 #include "coupling/observe/heap_rows.h"
+#include "coupling/specimen/field_rows.h"
+#include "coupling/specimen/heap_field.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -14,7 +14,7 @@
 #include "coupling/case/apply.h"
 #include "coupling/python/bindings.h"
 #include "coupling/python/own_forces.h"
-#include "dem/heap/grain_family.h"
+#include "dem/grains/grain_family.h"
 #include "dem/laws/material_defaults.h"
 #include "dem/laws/material_setup.h"
 #include "dem/motion/motion_setup.h"

@@ -15,7 +15,7 @@
 #include "coupling/result/profile_columns.h"
 #include "coupling/result/text_table.h"
 #include "coupling/store/atomic_file.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -21,7 +21,7 @@
 #include "coupling/run/realization_file.h"
 #include "dem/cannot_read_now.h"
 #include "dem/run/run.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::coupling {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "dem/snapshot/number.h"
-#include "dem/snapshot/replace_file.h"
+#include "dem/hdf5/replace_file.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <utility>
 
-#include "dem/snapshot/replace_file.h"
+#include "dem/hdf5/replace_file.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::coupling {

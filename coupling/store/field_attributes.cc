@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "coupling/store/field_io.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

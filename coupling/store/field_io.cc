@@ -15,7 +15,7 @@
 #include "coupling/base/version.h"
 #include "coupling/store/atomic_file.h"
 #include "coupling/store/field_attributes.h"
-#include "dem/snapshot/hdf5_file.h"
+#include "dem/hdf5/file.h"
 #include "dem/snapshot/limits.h"
 
 namespace grainfield::coupling {

@@ -12,8 +12,8 @@
 #include "coupling/averaging/kernel.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/averaging/rings.h"
-#include "coupling/heap/heap_field.h"
 #include "coupling/result/text_table.h"
+#include "coupling/specimen/heap_field.h"
 #include "coupling/tasks/average_items.h"
 #include "coupling/tasks/placement.h"
 

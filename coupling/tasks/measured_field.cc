@@ -17,8 +17,8 @@
 #include "coupling/import/format.h"
 #include "coupling/import/synonyms.h"
 #include "coupling/tasks/measured_share.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -9,7 +9,7 @@
 #include <map>
 #include <numbers>
 
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "coupling/tasks/placement.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/hdf5/file.h"
+#include "dem/hdf5/replace_file.h"
 #include "dem/laws/material_setup.h"
 #include "dem/laws/restitution.h"
 #include "dem/motion/leaping.h"
@@ -14,8 +16,6 @@
 #include "dem/run/outlook.h"
 #include "dem/run/run.h"
 #include "dem/run/setup.h"
-#include "dem/snapshot/hdf5_file.h"
-#include "dem/snapshot/replace_file.h"
 
 namespace grainfield::dem {
 namespace {

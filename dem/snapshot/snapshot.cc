@@ -15,11 +15,11 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "dem/hdf5/crc.h"
+#include "dem/hdf5/file.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/check_snapshot.h"
-#include "dem/snapshot/hdf5_crc.h"
-#include "dem/snapshot/hdf5_file.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 #include "dem/snapshot/number_tables.h"
 #include "dem/snapshot/table_file.h"
 #include "dem/snapshot/wall_forces.h"

@@ -20,11 +20,11 @@
 #include <utility>
 #include <vector>
 
+#include "coupling/specimen/relaxation.h"
 #include "coupling/studies/pile/simulation.h"
 #include "dem/computation_failed.h"
 #include "dem/engine/engine.h"
-#include "dem/heap/grain_family.h"
-#include "dem/heap/relaxation.h"
+#include "dem/grains/grain_family.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/random/random.h"
 #include "dem/run/common.h"

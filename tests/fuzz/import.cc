@@ -9,8 +9,8 @@
 #include "coupling/app/terminal.h"
 #include "coupling/import/import.h"
 #include "coupling/import/packing_warnings.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/check_snapshot.h"
-#include "dem/snapshot/number.h"
 #include "dem/snapshot/table_file.h"
 #include "tests/fuzz/target.h"
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "coupling/studies/sample/simulation/grains.h"
-#include "dem/heap/reach.h"
+#include "dem/grains/reach.h"
 #include "dem/run/common.h"
 #include "dem/run/softness.h"
 

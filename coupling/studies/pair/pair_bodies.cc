@@ -8,7 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "dem/heap/grain_family.h"
+#include "dem/grains/grain_family.h"
 #include "dem/motion/motion_setup.h"
 #include "dem/run/common.h"
 #include "dem/space/rotation.h"

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "coupling/fit/heap_result.h"
-#include "coupling/heap/scaled.h"
-#include "coupling/heap/setup.h"
 #include "coupling/observe/seen_models.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/measured_base.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/specimen/scaled.h"
+#include "coupling/specimen/setup.h"
 #include "coupling/studies/pile/figures.h"
 #include "coupling/studies/pile/page.h"
 #include "coupling/studies/pile/pile_ensemble.h"

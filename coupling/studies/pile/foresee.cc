@@ -7,8 +7,8 @@
 
 #include "coupling/studies/pile/pile_checks.h"
 #include "coupling/studies/pile/simulation.h"
-#include "dem/heap/grain_family.h"
-#include "dem/heap/source.h"
+#include "dem/grains/grain_family.h"
+#include "dem/pouring/source.h"
 #include "dem/run/common.h"
 #include "dem/run/judge_draws.h"
 

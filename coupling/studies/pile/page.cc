@@ -13,7 +13,7 @@
 #include "coupling/report/judgement.h"
 #include "coupling/run/comparison_page.h"
 #include "coupling/studies/pile/simulation.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "coupling/specimen/surface.h"
 #include "coupling/studies/pile/simulation.h"
 #include "dem/engine/engine.h"
-#include "dem/heap/funnel.h"
-#include "dem/heap/source.h"
-#include "dem/heap/surface.h"
+#include "dem/pouring/funnel.h"
+#include "dem/pouring/source.h"
 #include "dem/run/common.h"
 
 namespace grainfield::dem {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "dem/heap/relaxation.h"
-#include "dem/heap/volume_fraction.h"
+#include "coupling/specimen/relaxation.h"
+#include "coupling/specimen/volume_fraction.h"
 #include "dem/snapshot/contact_changes.h"
 
 namespace grainfield::dem {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/specimen/surface.h"
 #include "coupling/studies/pile/pile_checks.h"
 #include "coupling/studies/pile/poured_run.h"
-#include "dem/heap/funnel.h"
-#include "dem/heap/surface.h"
+#include "dem/pouring/funnel.h"
 
 namespace grainfield::dem {
 namespace {

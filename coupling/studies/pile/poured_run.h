@@ -9,8 +9,8 @@
 
 #include "coupling/studies/pile/gravity_changes.h"
 #include "coupling/studies/pile/simulation.h"
-#include "dem/heap/grain_family.h"
-#include "dem/heap/source.h"
+#include "dem/grains/grain_family.h"
+#include "dem/pouring/source.h"
 #include "dem/random/random.h"
 #include "dem/run/phases.h"
 

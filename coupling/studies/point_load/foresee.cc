@@ -6,9 +6,9 @@
 
 #include "coupling/studies/point_load/simulation.h"
 #include "coupling/studies/point_load/simulation_space.h"
-#include "dem/heap/grain_family.h"
-#include "dem/packing/packing.h"
-#include "dem/packing/space_layer.h"
+#include "dem/grains/grain_family.h"
+#include "dem/grains/packing.h"
+#include "dem/grains/space_layer.h"
 #include "dem/run/common.h"
 #include "dem/run/judge_draws.h"
 

@@ -18,7 +18,7 @@
 #include "coupling/studies/sample/simulation/path.h"
 #include "coupling/studies/sample/simulation/state.h"
 #include "dem/run/common.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "continuum/constants.h"
 #include "coupling/averaging/grain_facts.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

@@ -15,7 +15,7 @@
 #include "coupling/models/subject.h"
 #include "coupling/studies/wedge/analysis.h"
 #include "coupling/studies/wedge/setup.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {

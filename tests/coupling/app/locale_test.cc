@@ -14,7 +14,7 @@
 #include "coupling/case/case.h"
 #include "coupling/result/field_file.h"
 #include "coupling/tasks/measured_field.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 #include "tests/coupling/program.h"
 
 namespace grainfield::coupling {

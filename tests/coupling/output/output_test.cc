@@ -17,7 +17,7 @@
 #include "coupling/store/atomic_file.h"
 #include "coupling/store/field_io.h"
 #include "coupling/store/vtu.h"
-#include "dem/snapshot/hdf5_file.h"
+#include "dem/hdf5/file.h"
 #include "tests/coupling/averaging_scene.h"
 #include "tests/coupling/heap_scene.h"
 

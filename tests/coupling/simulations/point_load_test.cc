@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "coupling/studies/point_load/simulation.h"
-#include "dem/packing/packing.h"
+#include "dem/grains/packing.h"
 #include "dem/snapshot/contact_changes.h"
 #include "tests/coupling/pile_scene.h"
 #include "tests/dem/imbalance.h"

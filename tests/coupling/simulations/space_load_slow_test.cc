@@ -8,7 +8,7 @@
 
 #include "coupling/studies/point_load/simulation.h"
 #include "coupling/studies/point_load/simulation_space.h"
-#include "dem/packing/space_layer.h"
+#include "dem/grains/space_layer.h"
 #include "dem/run/outlook.h"
 #include "dem/snapshot/contact_changes.h"
 #include "tests/coupling/pile_scene.h"

@@ -12,9 +12,9 @@
 
 #include "coupling/averaging/base.h"
 #include "coupling/averaging/cone.h"
-#include "coupling/heap/cone_windows.h"
 #include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/specimen/cone_windows.h"
 #include "coupling/store/field_io.h"
 #include "dem/random/random.h"
 #include "dem/snapshot/snapshot.h"

@@ -12,10 +12,12 @@ const std::vector<Room>& rooms() {
   static const std::vector<Room> kRooms{
       {"space", {}},
       {"image", {}},
+      {"shared", {}},
       {"words", {}},
       {"random", {}},
       {"newton", {}},
-      {"snapshot", {"space"}},
+      {"hdf5", {"shared"}},
+      {"snapshot", {"space", "hdf5", "shared"}},
       {"shapes", {"space", "image", "words"}},
       {"laws", {"space", "words"}},
       {"neighbours", {"space"}},
@@ -30,11 +32,11 @@ const std::vector<Room>& rooms() {
       {"quasistatic", {"space", "shapes", "laws", "neighbours", "motion", "newton", "snapshot"}},
       {"implicit", {"space", "image", "neighbours", "newton", "quasistatic"}},
       {"switching", {"space", "image", "neighbours", "collisions", "implicit"}},
-      {"heap", {"space", "engine", "shapes", "random", "snapshot"}},
-      {"packing", {"engine", "heap", "laws", "random", "space"}},
+      {"grains", {"space", "engine", "laws", "shapes", "random", "snapshot"}},
+      {"pouring", {"engine", "grains"}},
       {"run",
-       {"engine", "heap", "image", "implicit", "laws", "motion", "packing", "quasistatic", "random",
-        "shapes", "snapshot", "space"}},
+       {"engine", "grains", "image", "implicit", "laws", "motion", "quasistatic", "random",
+        "shapes", "shared", "snapshot", "space"}},
   };
   return kRooms;
 }

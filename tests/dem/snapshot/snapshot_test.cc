@@ -12,7 +12,7 @@
 #include <fstream>
 #include <limits>
 
-#include "dem/snapshot/hdf5_file.h"
+#include "dem/hdf5/file.h"
 #include "tests/dem/snapshot_scene.h"
 
 namespace grainfield::dem {

@@ -1,5 +1,5 @@
 // Numbers as they stand in files.
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "coupling/studies/sample/simulation/drop.h"
-#include "dem/heap/superellipsoid_family.h"
-#include "dem/packing/loose.h"
+#include "dem/grains/loose.h"
+#include "dem/grains/superellipsoid_family.h"
 #include "dem/space/elementary.h"
 
 namespace grainfield::dem {
