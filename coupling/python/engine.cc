@@ -430,7 +430,7 @@ void add_engine(py::module_& module) {
                    fmt::format("{}", fmt::join(self.missing(), ", "));
              return Packing{std::make_shared<const Snapshot>(std::move(now))};
            })
-      .def("image", [](const Engine& self) { return py::bytes(self.state().image()); })
+      .def("image", [](const Engine& self) { return py::bytes(self.state().checkpoint()); })
       .def_property_readonly("dim", &Engine::dim)
       .def_property_readonly("time", [](const Engine& e) { return e.state().time(); })
       .def_property_readonly("steps", [](const Engine& e) { return e.state().steps(); })

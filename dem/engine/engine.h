@@ -198,9 +198,9 @@ class Engine {
   virtual void remember(const std::vector<Contact>& contacts) = 0;
 
   /// The whole state, in bits, and back. restore() expects an engine made with the same settings
-  /// and without grains; throws std::invalid_argument when the image does not fit.
-  virtual std::string image() const = 0;
-  virtual void restore(const std::string& image) = 0;
+  /// and without grains; throws std::invalid_argument when the checkpoint does not fit.
+  virtual std::string checkpoint() const = 0;
+  virtual void restore(const std::string& checkpoint) = 0;
 };
 
 /// The largest time step that make_engine's user should take, s: the smaller of

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/grains/layer_3d.h"
 #include "dem/grains/placed.h"
-#include "dem/grains/space_layer.h"
 
 namespace grainfield::dem {
 namespace {
@@ -64,7 +64,7 @@ ShapeSetup pentagon(const PackingSetup& p) {
 }
 
 void check_packing(const PackingSetup& p) {
-  if (p.dim == 3) return check_space_layer(p);
+  if (p.dim == 3) return check_layer_3d(p);
   if (p.kind == "layered") {
     require(p.width >= 4 * largest_radius(p), "width", p.width, "at least two grain diameters");
     require(p.depth >= 2 * largest_radius(p), "depth", p.depth, "at least one grain diameter");

@@ -13,7 +13,7 @@
 namespace grainfield::dem {
 
 struct PackingSetup {
-  int dim = 2;                     ///< 2: disks and pentagons; 3: spheres (space_layer.h)
+  int dim = 2;                     ///< 2: disks and pentagons; 3: spheres (layer_3d.h)
   std::string kind = "layered";    ///< triangular | sqrt3 | layered; 3D: close_packed | random
   std::string sizes = "uniform";   ///< mono | bidisperse | uniform
   double radius = 0.0045;          ///< m; mono, and the larger of bidisperse

@@ -15,10 +15,8 @@ double reach_along(const Grain& grain, const Vec3& n) {
   return height_of(body, turned.conjugate() * Eigen::Vector3d(n));
 }
 
-double top_in_space(const Grain& grain) {
-  return grain.position.z() + reach_along(grain, Vec3(0, 0, 1));
-}
-double bottom_in_space(const Grain& grain) {
+double top_3d(const Grain& grain) { return grain.position.z() + reach_along(grain, Vec3(0, 0, 1)); }
+double bottom_3d(const Grain& grain) {
   return grain.position.z() - reach_along(grain, Vec3(0, 0, -1));
 }
 

@@ -9,7 +9,7 @@ namespace grainfield::dem {
 double reach_along(const Grain& grain, const Vec3& n);
 
 /// Height of its highest and of its lowest point, z up, m.
-double top_in_space(const Grain& grain);
-double bottom_in_space(const Grain& grain);
+double top_3d(const Grain& grain);
+double bottom_3d(const Grain& grain);
 
 }  // namespace grainfield::dem

@@ -131,7 +131,7 @@ Handle open_for_reading(const std::string& file) {
     throw std::invalid_argument(
         fmt::format("{}: not an HDF5 file, or its beginning is broken", file));
   }
-  probe(file);
+  read_on_trial(file);
   Handle handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!handle.valid()) {
     require_readable_now(file, out_of_memory() ? ENOMEM : error_of_the_moment());
@@ -146,7 +146,7 @@ Handle open_for_adding(const std::string& file) {
   prepare();
   std::error_code error;
   if (!std::filesystem::exists(file, error)) return create(file);
-  probe(file);
+  read_on_trial(file);
   Handle handle(H5Fopen(file.c_str(), H5F_ACC_RDWR, access()), H5Fclose);
   if (handle.valid()) return handle;
   // What cannot be read either is said as such.

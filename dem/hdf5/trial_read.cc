@@ -242,7 +242,7 @@ void trust(const std::string& file) {
   if (state_of(file, state)) known().insert(state);
 }
 
-void probe(const std::string& file) {
+void read_on_trial(const std::string& file) {
   State state;
   if (!state_of(file, state) || known().count(state) > 0) return;
   const bool alone = StructureOnly::holds();

@@ -9,7 +9,7 @@ namespace grainfield::dem::hdf5 {
 /// and state of the file. Throws std::invalid_argument naming the file when the child does not
 /// come to its end; CannotReadNow when somebody else ends the child, or the process may not take
 /// the memory. Like all calls of HDF5 by one thread at a time.
-void probe(const std::string& file);
+void read_on_trial(const std::string& file);
 /// This process has written the file as it is now: it needs no look.
 void trust(const std::string& file);
 
@@ -19,9 +19,9 @@ class TooMuchToLookAt : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// While it lives, probe() goes through groups and attributes only, within 2 s and 64 MB whatever
-/// the file's size, and throws TooMuchToLookAt where that is not enough: for who asks what is in a
-/// file and reads no data.
+/// While it lives, read_on_trial() goes through groups and attributes only, within 2 s and 64 MB
+/// whatever the file's size, and throws TooMuchToLookAt where that is not enough: for who asks what
+/// is in a file and reads no data.
 class StructureOnly {
  public:
   StructureOnly() { ++depth_; }

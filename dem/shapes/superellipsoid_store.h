@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "dem/image/image.h"
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/shapes/common_normal.h"
 #include "dem/shapes/solid.h"
 #include "dem/space/body.h"
@@ -211,8 +211,8 @@ class SuperellipsoidStore {
     return true;
   }
 
-  void write(ImageWriter& w) const { w.put(grains_); }
-  void read(ImageReader& r, std::size_t grains) {
+  void write(CheckpointWriter& w) const { w.put(grains_); }
+  void read(CheckpointReader& r, std::size_t grains) {
     r.get(grains_);
     r.require(grains_.size() == grains);
     lanes_.resize(grains);

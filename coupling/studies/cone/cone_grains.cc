@@ -262,7 +262,7 @@ NewGrain placed_grain(const ShapedGrain& grain, double x, double y, double z, do
 
 double resting_height(const Snapshot& s) {
   double top = 0;
-  for (const Grain* g : lying_grains(s)) top = std::max(top, top_in_space(*g));
+  for (const Grain* g : lying_grains(s)) top = std::max(top, top_3d(*g));
   return top;
 }
 
@@ -270,7 +270,7 @@ double top_within(const Snapshot& s, double radius) {
   double top = 0;
   for (const Grain& g : s.grains) {
     if (!g.fixed && g.position.head<2>().norm() < radius) {
-      top = std::max(top, top_in_space(g));
+      top = std::max(top, top_3d(g));
     }
   }
   return top;
@@ -284,7 +284,7 @@ LocalTops::LocalTops(const Snapshot& s, double half, double cell)
   for (const Grain* g : lying_grains(s)) {
     double& top = top_[static_cast<std::size_t>(cell_of(g->position.y()) * count_ +
                                                 cell_of(g->position.x()))];
-    top = std::max(top, top_in_space(*g));
+    top = std::max(top, top_3d(*g));
   }
 }
 

@@ -209,15 +209,15 @@ class ImplicitSettlingRun final : public ArchivedRun {
     return fmt::format("implicit settling {} {}", fingerprint_of(setup_), seed_);
   }
   void visit(Archive& archive) override {
-    std::string image = archive.is_reading() ? std::string() : disks_.image();
-    archive(image);
+    std::string checkpoint = archive.is_reading() ? std::string() : disks_.checkpoint();
+    archive(checkpoint);
     archive(records_);
     archive(solves_);
     archive(iterations_);
     archive(at_rest_);
     archive(done_);
     archive.require(!records_.empty());
-    if (archive.is_reading()) disks_.restore(image);
+    if (archive.is_reading()) disks_.restore(checkpoint);
   }
 
   ImplicitSettlingSetup setup_;

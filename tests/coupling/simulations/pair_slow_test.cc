@@ -52,7 +52,7 @@ PairSetup linear(const char* shape) {
 double reduced_mass(const PairSetup& s) {
   const double r = s.radius;
   const double volume =
-      s.in_space() ? 4.0 / 3 * std::numbers::pi * r * r * r : std::numbers::pi * r * r;
+      s.is_3d() ? 4.0 / 3 * std::numbers::pi * r * r * r : std::numbers::pi * r * r;
   return s.material.density * volume / 2;
 }
 
@@ -78,7 +78,7 @@ TEST_P(LinearPair, TangentialRestitutionIsTheClosedForm) {
   PairSetup s = linear(GetParam());
   s.angle = 30;
   s.offset = 0;
-  const double mass = reduced_mass(s), inverse = s.in_space() ? 3.5 : 3;
+  const double mass = reduced_mass(s), inverse = s.is_3d() ? 3.5 : 3;
   const double ratio =
       std::sqrt(inverse * s.material.tangential_stiffness / s.material.normal_stiffness);
   EXPECT_GT(mass, 0);

@@ -124,8 +124,8 @@ TEST(HardEngine, GrainsOfInfiniteMassGoTheirWay) {
 }
 
 template <int D>
-std::string image_of(HardEngine<D>& engine) {
-  ImageWriter writer;
+std::string checkpoint_of(HardEngine<D>& engine) {
+  CheckpointWriter writer;
   const auto put = [&](const auto& value) { writer.put(value); };
   engine.visit(put);
   return writer.bytes();
@@ -141,7 +141,8 @@ void expect_same_bits(const std::vector<Body<D>>& a, const std::vector<Body<D>>&
   }
 }
 
-// However it is cut, and when it goes on from its image. Long enough for the clock to start anew.
+// However it is cut, and when it goes on from its checkpoint. Long enough for the clock to start
+// anew.
 template <int D>
 void expect_bits() {
   Random random(6);
@@ -161,8 +162,8 @@ void expect_bits() {
     cut.advance(std::min(7777 - cut.tally().events, 13L), 0.01 * k);
     cut.kinetic_energy();
   }
-  const std::string image = image_of(cut);
-  ImageReader reader(image);
+  const std::string checkpoint = checkpoint_of(cut);
+  CheckpointReader reader(checkpoint);
   HardEngine<D> again(scene, grains);
   const auto get = [&](auto& value) { reader.get(value); };
   again.visit(get);
@@ -178,7 +179,7 @@ void expect_bits() {
 
   // What is no state is said to be none.
   HardEngine<D> other(scene, std::vector<Body<D>>(grains.begin(), grains.end() - 1));
-  ImageReader second(image);
+  CheckpointReader second(checkpoint);
   const auto put = [&](auto& value) { second.get(value); };
   other.visit(put);
   EXPECT_FALSE(other.settle());

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "dem/grains/space_layer.h"
+#include "dem/grains/layer_3d.h"
 #include "dem/random/random.h"
 
 namespace grainfield::dem {
@@ -34,8 +34,8 @@ TEST(Reach, OfSpheresAndEllipsoidsIsTheClosedForm) {
   Grain sphere;
   sphere.position = Vec3(1, 2, 3);
   sphere.radius = 0.5;
-  EXPECT_DOUBLE_EQ(top_in_space(sphere), 3.5);
-  EXPECT_DOUBLE_EQ(bottom_in_space(sphere), 2.5);
+  EXPECT_DOUBLE_EQ(top_3d(sphere), 3.5);
+  EXPECT_DOUBLE_EQ(bottom_3d(sphere), 2.5);
   Random random(1);
   for (int k = 0; k < 200; ++k) {
     const Vec3 axes(random.uniform(0.5, 2), random.uniform(0.5, 2), random.uniform(0.5, 2));
@@ -43,8 +43,8 @@ TEST(Reach, OfSpheresAndEllipsoidsIsTheClosedForm) {
     const Grain g = superellipsoid_at({0, 0, 3}, axes, {1, 1}, turned);
     const Eigen::Vector3d up = turned.conjugate() * Eigen::Vector3d::UnitZ();
     const double expected = up.cwiseProduct(Eigen::Vector3d(axes)).norm();
-    EXPECT_NEAR(top_in_space(g), 3 + expected, 1e-12);
-    EXPECT_NEAR(bottom_in_space(g), 3 - expected, 1e-12);
+    EXPECT_NEAR(top_3d(g), 3 + expected, 1e-12);
+    EXPECT_NEAR(bottom_3d(g), 3 - expected, 1e-12);
   }
 }
 
@@ -69,8 +69,8 @@ TEST(Reach, OfSuperellipsoidsIsTheHighestPointOfTheSurface) {
         highest = std::max(highest, (turned * x).z());
       }
     }
-    EXPECT_LE(highest, top_in_space(g) + 1e-9);
-    EXPECT_GT(highest, 0.985 * top_in_space(g));
+    EXPECT_LE(highest, top_3d(g) + 1e-9);
+    EXPECT_GT(highest, 0.985 * top_3d(g));
   }
 }
 
@@ -89,7 +89,7 @@ TEST(Reach, ALayerOfFlatGrainsIsAsHighAsTheyAreThick) {
     g.radius = 1;
     s.grains.push_back(g);
   }
-  EXPECT_NEAR(space_surface(s, packing), 0.4, 1e-12);
+  EXPECT_NEAR(surface_3d(s, packing), 0.4, 1e-12);
 }
 
 }  // namespace

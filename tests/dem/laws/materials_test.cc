@@ -108,9 +108,9 @@ TEST(Materials, AreTheSameOnThreadsAndAfterARestart) {
     }
     engine->step(2000);
     if (cut) {
-      const std::string image = engine->image();
+      const std::string checkpoint = engine->checkpoint();
       engine = box();
-      engine->restore(image);
+      engine->restore(checkpoint);
     }
     engine->step(2000);
     return bits::hash_of(engine->snapshot());

@@ -228,9 +228,9 @@ std::unique_ptr<Engine> SampleRun::empty_engine() const {
 
 // The same grains, contacts and walls go on with the friction of the phase.
 void SampleRun::change_friction() {
-  const std::string image = engine_->image();
+  const std::string checkpoint = engine_->checkpoint();
   engine_ = empty_engine();
-  engine_->restore(image);
+  engine_->restore(checkpoint);
 }
 
 long SampleRun::every() const {

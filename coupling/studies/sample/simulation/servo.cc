@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "coupling/studies/sample/simulation/grains.h"
-#include "dem/engine/pair_probe.h"
+#include "dem/engine/pair_contact.h"
 
 namespace grainfield::dem {
 namespace {
@@ -52,14 +52,14 @@ ContactAnswer answer_of(const SamplePlan& plan, const EngineSettings& settings, 
     grain.outline = regular(r, corners);
     touching *= std::cos(std::numbers::pi / corners);
   }
-  const auto probe = make_pair_probe(bare, grain, grain);
+  const auto contact = make_pair_contact(bare, grain, grain);
   const auto push = [&](double depth, double speed) {
     PairState first, second;
     first.velocity.x() = speed;
     second.position.x() = touching - depth;
     second.angle = std::numbers::pi;
-    probe->forget();
-    return probe->at(first, second, 0).normal_force;
+    contact->forget();
+    return contact->at(first, second, 0).normal_force;
   };
   double low = 0, high = r;
   for (int k = 0; k < 60; ++k) {

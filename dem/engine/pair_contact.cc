@@ -1,4 +1,4 @@
-#include "dem/engine/pair_probe.h"
+#include "dem/engine/pair_contact.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,7 +19,7 @@ namespace grainfield::dem {
 namespace {
 
 template <class Store, class Law>
-class ProbeOf final : public PairProbe {
+class ContactOf final : public PairContact {
  public:
   static constexpr int dim = Store::dim;
   using Acting = Interaction<Store, Law>;
@@ -27,8 +27,8 @@ class ProbeOf final : public PairProbe {
   using Overlap = typename Store::Overlap;
 
   /// `wall`: null for a second grain.
-  ProbeOf(const EngineSettings& settings, const NewGrain& first, const NewGrain* second,
-          const Wall* wall)
+  ContactOf(const EngineSettings& settings, const NewGrain& first, const NewGrain* second,
+            const Wall* wall)
       : acting_(Rules<Law>(settings)) {
     const int kind = add(settings, first);
     if (wall == nullptr) {
@@ -87,14 +87,14 @@ class ProbeOf final : public PairProbe {
     rolling_ = {};
     feature_ = {};
   }
-  std::string image() const override {
-    ImageWriter w;
+  std::string checkpoint() const override {
+    CheckpointWriter w;
     w.put(memory_);
     w.put(rolling_);
     return w.bytes();
   }
-  void restore(const std::string& image) override {
-    ImageReader r(image);
+  void restore(const std::string& checkpoint) override {
+    CheckpointReader r(checkpoint);
     r.get(memory_);
     r.get(rolling_);
     r.finish();
@@ -107,14 +107,14 @@ class ProbeOf final : public PairProbe {
     const Solid<dim> solid = shapes_.add({g.radius, g.outline, g.axes, g.exponents});
     Inertia<dim> inertia{g.density * solid.volume, g.density * solid.moments, solid.volume};
     if (g.mass > 0) inertia.mass = g.mass;
-    take_moments(g, inertia);
+    read_moments(g, inertia);
     const int number = count_++;
     Body<dim>& b = bodies_[number];
     b.radius = solid.radius;
-    if constexpr (dim == 3) shapes_.place(number, b, rotation_told(g, inertia));
+    if constexpr (dim == 3) shapes_.place(number, b, read_rotation(g, inertia));
     if (g.fixed) return kind;
     b.inverse_mass = 1 / inertia.mass;
-    if (g.rotates) take_turning(g, inertia, b);
+    if (g.rotates) read_spin(g, inertia, b);
     return kind;
   }
   void move(int i, const PairState& state) {
@@ -152,14 +152,14 @@ class ProbeOf final : public PairProbe {
 };
 
 template <class Store>
-std::unique_ptr<PairProbe> probe_of(const EngineSettings& settings, const NewGrain& first,
-                                    const NewGrain* second, const Wall* wall) {
+std::unique_ptr<PairContact> contact_of(const EngineSettings& settings, const NewGrain& first,
+                                        const NewGrain* second, const Wall* wall) {
   const AnyLaw& any =
       settings.material_pairs.empty() ? settings.law : settings.material_pairs.front().law;
   return std::visit(
-      [&]<LawEntry Law>(const Law&) -> std::unique_ptr<PairProbe> {
+      [&]<LawEntry Law>(const Law&) -> std::unique_ptr<PairContact> {
         if constexpr (GoesWith<Law, Store>) {
-          return std::make_unique<ProbeOf<Store, Law>>(settings, first, second, wall);
+          return std::make_unique<ContactOf<Store, Law>>(settings, first, second, wall);
         } else {
           throw std::invalid_argument(fmt::format(
               "material.law: found \"{}\", allowed for grains of this shape: {}", Law::name,
@@ -169,8 +169,8 @@ std::unique_ptr<PairProbe> probe_of(const EngineSettings& settings, const NewGra
       any);
 }
 
-std::unique_ptr<PairProbe> make(const EngineSettings& settings, const NewGrain& first,
-                                const NewGrain* second, const Wall* wall) {
+std::unique_ptr<PairContact> make(const EngineSettings& settings, const NewGrain& first,
+                                  const NewGrain* second, const Wall* wall) {
   check_materials(settings);
   check_rolling(settings);
   if (settings.resist_rolling() && settings.shape == ShapeKind::polygon) refuse_rolling_polygons();
@@ -178,19 +178,19 @@ std::unique_ptr<PairProbe> make(const EngineSettings& settings, const NewGrain& 
     refuse_rolling_superellipsoids();
   }
   return settings.shape.visit([&](auto kind) {
-    return probe_of<typename decltype(kind)::Store>(settings, first, second, wall);
+    return contact_of<typename decltype(kind)::Store>(settings, first, second, wall);
   });
 }
 
 }  // namespace
 
-std::unique_ptr<PairProbe> make_pair_probe(const EngineSettings& settings, const NewGrain& first,
-                                           const NewGrain& second) {
+std::unique_ptr<PairContact> make_pair_contact(const EngineSettings& settings,
+                                               const NewGrain& first, const NewGrain& second) {
   return make(settings, first, &second, nullptr);
 }
 
-std::unique_ptr<PairProbe> make_pair_probe(const EngineSettings& settings, const NewGrain& grain,
-                                           const Wall& wall) {
+std::unique_ptr<PairContact> make_pair_contact(const EngineSettings& settings,
+                                               const NewGrain& grain, const Wall& wall) {
   return make(settings, grain, nullptr, &wall);
 }
 

@@ -1,4 +1,4 @@
-#include "dem/grains/space_layer.h"
+#include "dem/grains/layer_3d.h"
 
 #include <fmt/format.h>
 
@@ -180,7 +180,7 @@ std::vector<NewGrain> lattice(const PackingSetup& p, double density, Random& ran
 
 }  // namespace
 
-void check_space_layer(const PackingSetup& p) {
+void check_layer_3d(const PackingSetup& p) {
   if (p.kind != "close_packed" && p.kind != "random") {
     refuse("kind", p.kind, "close_packed, random with packing.dim = 3");
   }
@@ -282,7 +282,7 @@ Cell<3> layer_cell(const PackingSetup& p) {
   return cell;
 }
 
-std::vector<Wall> space_walls(const PackingSetup& p, const MaterialSetup& material) {
+std::vector<Wall> walls_3d(const PackingSetup& p, const MaterialSetup& material) {
   const double below = p.floor == "rough" ? -2 * largest_radius(p) : 0;
   std::vector<Wall> walls{{"floor", Vec3(0, 0, below), Vec3(0, 0, 1), material.floor_friction}};
   if (p.sides == "periodic") return walls;
@@ -298,7 +298,7 @@ std::vector<Wall> space_walls(const PackingSetup& p, const MaterialSetup& materi
   return walls;
 }
 
-std::vector<NewGrain> space_floor(const PackingSetup& p, double density, Random& random) {
+std::vector<NewGrain> floor_3d(const PackingSetup& p, double density, Random& random) {
   std::vector<NewGrain> grains;
   if (p.floor != "rough") return grains;
   if (is_lattice(p)) {
@@ -323,7 +323,7 @@ std::vector<NewGrain> space_floor(const PackingSetup& p, double density, Random&
   return grains;
 }
 
-std::vector<NewGrain> space_grains(const PackingSetup& p, double density, Random& random) {
+std::vector<NewGrain> grains_3d(const PackingSetup& p, double density, Random& random) {
   if (is_lattice(p)) return lattice(p, density, random);
   const std::vector<ShapedGrain> drawn = draw_layer(p, random);
   std::vector<double> radii;
@@ -342,7 +342,7 @@ std::vector<NewGrain> space_grains(const PackingSetup& p, double density, Random
   return grains;
 }
 
-double space_surface(const Snapshot& snapshot, const PackingSetup& p) {
+double surface_3d(const Snapshot& snapshot, const PackingSetup& p) {
   double diameters = 0;
   int count = 0;
   for (const Grain& g : snapshot.grains) {
@@ -365,7 +365,7 @@ double space_surface(const Snapshot& snapshot, const PackingSetup& p) {
       at[a] = std::clamp(static_cast<int>(share * columns[a]), 0, columns[a] - 1);
     }
     double& here = top[static_cast<std::size_t>(at[1]) * columns[0] + at[0]];
-    here = std::max(here, top_in_space(g));
+    here = std::max(here, top_3d(g));
   }
   double sum = 0;
   for (const double t : top) sum += t;

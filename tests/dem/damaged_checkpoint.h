@@ -8,9 +8,9 @@
 
 namespace grainfield::dem {
 
-inline constexpr const char* kBrokenImage = "the checkpoint is broken or of another setup";
+inline constexpr const char* kBrokenCheckpoint = "the checkpoint is broken or of another setup";
 
-/// As an image has them.
+/// As a checkpoint has them.
 template <class T>
 std::string bytes_of(const T& value) {
   std::string out(sizeof value, '\0');
@@ -18,12 +18,12 @@ std::string bytes_of(const T& value) {
   return out;
 }
 
-/// What restore() says when these bytes stand at a place of an image; "accepted" when nothing.
+/// What restore() says when these bytes stand at a place of a checkpoint; "accepted" when nothing.
 template <class T>
-std::string refusal_with(Engine& engine, std::string image, std::size_t at, const T& value) {
-  image.replace(at, sizeof value, bytes_of(value));
+std::string refusal_with(Engine& engine, std::string checkpoint, std::size_t at, const T& value) {
+  checkpoint.replace(at, sizeof value, bytes_of(value));
   try {
-    engine.restore(image);
+    engine.restore(checkpoint);
   } catch (const std::invalid_argument& e) {
     return e.what();
   }

@@ -37,9 +37,9 @@ struct PairForces {
   double stored = 0;            ///< elastic energy, with that of the springs, J
 };
 
-class PairProbe {
+class PairContact {
  public:
-  virtual ~PairProbe() = default;
+  virtual ~PairContact() = default;
   /// What acts at these states after the pair has come to them in the time dt, s: what the pair
   /// remembers advances by dt (0: by nothing), as in a step of the engine. It is forgotten where
   /// they do not touch. The state of a wall is its velocity and spin about its point alone.
@@ -47,17 +47,17 @@ class PairProbe {
   /// As if they had never touched.
   virtual void forget() = 0;
   /// What the pair remembers, in bits, and back; throws std::invalid_argument when it does not fit.
-  virtual std::string image() const = 0;
-  virtual void restore(const std::string& image) = 0;
+  virtual std::string checkpoint() const = 0;
+  virtual void restore(const std::string& checkpoint) = 0;
 };
 
 /// Of the settings only shape, law and friction are used; mass, moments and outline are those of
 /// the grains, their places and motion are not used. Throws std::invalid_argument naming the key
 /// when the law does not go with the shape, or polygons resist rolling.
-std::unique_ptr<PairProbe> make_pair_probe(const EngineSettings& settings, const NewGrain& first,
-                                           const NewGrain& second);
+std::unique_ptr<PairContact> make_pair_contact(const EngineSettings& settings,
+                                               const NewGrain& first, const NewGrain& second);
 /// The same of a grain with a plane wall; throws likewise for walls of other shapes.
-std::unique_ptr<PairProbe> make_pair_probe(const EngineSettings& settings, const NewGrain& grain,
-                                           const Wall& wall);
+std::unique_ptr<PairContact> make_pair_contact(const EngineSettings& settings,
+                                               const NewGrain& grain, const Wall& wall);
 
 }  // namespace grainfield::dem

@@ -1,20 +1,20 @@
-// Forces of the caller's own in an image: in front of all else, and only where there are or have
-// been such.
+// Forces of the caller's own in a checkpoint: in front of all else, and only where there are or
+// have been such.
 #pragma once
 #include <string>
 #include <vector>
 
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/engine/added_loads.h"
-#include "dem/image/image.h"
 
 namespace grainfield::dem {
 
-inline const std::string kAddedImage = "grainfield: added forces";
+inline const std::string kAddedMark = "grainfield: added forces";
 
-inline bool holds_added(const std::string& image) {
-  ImageWriter w;
-  w.put(kAddedImage);
-  return image.starts_with(w.bytes());
+inline bool holds_added(const std::string& checkpoint) {
+  CheckpointWriter w;
+  w.put(kAddedMark);
+  return checkpoint.starts_with(w.bytes());
 }
 
 template <int D>
@@ -24,8 +24,8 @@ struct KeptAdded {
 };
 
 template <int D>
-void write_added(const AddedLoads<D>& added, ImageWriter& w) {
-  w.put(kAddedImage);
+void write_added(const AddedLoads<D>& added, CheckpointWriter& w) {
+  w.put(kAddedMark);
   w.put(added.names());
   w.put(added.former.size());
   for (const std::string& name : added.former) w.put(name);
@@ -41,9 +41,10 @@ void write_added(const AddedLoads<D>& added, ImageWriter& w) {
   }
 }
 
-/// Throws std::invalid_argument when `added` has other forces than the image, or it does not fit.
+/// Throws std::invalid_argument when `added` has other forces than the checkpoint, or it does not
+/// fit.
 template <int D>
-void read_added(AddedLoads<D>& added, ImageReader& r) {
+void read_added(AddedLoads<D>& added, CheckpointReader& r) {
   std::string text;
   r.get(text);
   r.get(text);

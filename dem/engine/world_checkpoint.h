@@ -3,13 +3,14 @@
 #include <string>
 #include <vector>
 
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/engine/search.h"
 #include "dem/engine/world.h"
-#include "dem/image/image.h"
 
 namespace grainfield::dem {
 
-/// each(value) for all that an image holds but the frozen contacts and the shapes, in its order.
+/// each(value) for all that a checkpoint holds but the frozen contacts and the shapes, in its
+/// order.
 template <class World, class Search, class Each>
 void visit_world(World& world, Search& search, Each each) {
   each(world.around);
@@ -30,15 +31,15 @@ void visit_world(World& world, Search& search, Each each) {
 }
 
 template <class World>
-void write_world(const World& world, const Search<World>& search, ImageWriter& w) {
+void write_world(const World& world, const Search<World>& search, CheckpointWriter& w) {
   visit_world(world, search, [&w](const auto& value) { w.put(value); });
   w.put(world.sleepers.frozen.sorted());
   world.grains.shapes.write(w);
 }
 
-/// Throws std::invalid_argument when the image does not fit.
+/// Throws std::invalid_argument when the checkpoint does not fit.
 template <class World>
-void read_world(World& world, Search<World>& search, ImageReader& r) {
+void read_world(World& world, Search<World>& search, CheckpointReader& r) {
   visit_world(world, search, [&r](auto& value) { r.get(value); });
   std::vector<typename World::Frozen> frozen;
   r.get(frozen);

@@ -18,7 +18,7 @@ namespace grainfield::dem {
 inline constexpr double kSettledFraction = 0.55;
 
 /// As check_packing, of packing.dim = 3.
-void check_space_layer(const PackingSetup& packing);
+void check_layer_3d(const PackingSetup& packing);
 
 /// Superellipsoids instead of spheres.
 bool is_angular(const PackingSetup& packing);
@@ -47,21 +47,21 @@ double loose_height(const PackingSetup& packing);
 Cell<3> layer_cell(const PackingSetup& packing);
 /// The plane "floor" (below a rough floor out of reach), and "left", "right" (x), "front", "back"
 /// (y) of packing.sides = "walls".
-std::vector<Wall> space_walls(const PackingSetup& packing, const MaterialSetup& material);
+std::vector<Wall> walls_3d(const PackingSetup& packing, const MaterialSetup& material);
 
 /// The fixed spheres of a rough floor with their tops at z = 0; none of a smooth one. Under a close
 /// packing a layer of it; else rows that leave no gap for a free grain, radii as the layer's or,
 /// where a small grain would pass between small ones, the largest.
-std::vector<NewGrain> space_floor(const PackingSetup& packing, double density, Random& random);
+std::vector<NewGrain> floor_3d(const PackingSetup& packing, double density, Random& random);
 
 /// The free spheres. random: apart from each other in a box loose_height() high above the floor, as
 /// many as fill packing.depth at kSettledFraction. close_packed: packing.rows layers, densest in
 /// the horizontal plane, in the order ABC (fcc) or AB (hcp), touching without overlap (jitter:
 /// smaller spheres at the same places).
-std::vector<NewGrain> space_grains(const PackingSetup& packing, double density, Random& random);
+std::vector<NewGrain> grains_3d(const PackingSetup& packing, double density, Random& random);
 
 /// Height of the free surface, m: mean over columns two mean diameters wide of the highest top. 0
 /// without free grains.
-double space_surface(const Snapshot& snapshot, const PackingSetup& packing);
+double surface_3d(const Snapshot& snapshot, const PackingSetup& packing);
 
 }  // namespace grainfield::dem

@@ -14,7 +14,7 @@ namespace grainfield::dem {
 template <class T>
 inline constexpr bool kIsPlain = std::is_standard_layout_v<T>&& std::is_trivially_destructible_v<T>;
 
-class ImageWriter {
+class CheckpointWriter {
  public:
   template <class T>
   void put(const T& value) {
@@ -34,10 +34,11 @@ class ImageWriter {
   std::string bytes_;
 };
 
-/// Reads in the order of writing; throws std::invalid_argument when the image is too short or long.
-class ImageReader {
+/// Reads in the order of writing; throws std::invalid_argument when the checkpoint is too short or
+/// long.
+class CheckpointReader {
  public:
-  explicit ImageReader(const std::string& bytes) : bytes_(bytes) {}
+  explicit CheckpointReader(const std::string& bytes) : bytes_(bytes) {}
 
   template <class T>
   void get(T& value) {
