@@ -23,7 +23,7 @@ double number_in(const fs::path& file) {
   std::ifstream in(file);
   std::string text;
   in >> text;
-  const double bytes = dem::parse_number(text).value_or(0);
+  const double bytes = parse_number(text).value_or(0);
   return bytes > 0 ? bytes : kUnlimited;
 }
 

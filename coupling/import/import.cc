@@ -123,7 +123,7 @@ void check_options(const ImportOptions& options) {
 }
 
 // A number without a unit; 0 needs none.
-bool is_bare(std::string_view length) { return dem::parse_number(length).value_or(0) != 0; }
+bool is_bare(std::string_view length) { return parse_number(length).value_or(0) != 0; }
 
 // Beside another unit of the files' lengths a bare one of an option is in doubt.
 void require_unit(bool bare, const std::string& option, const std::string& units) {

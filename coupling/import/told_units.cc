@@ -74,7 +74,7 @@ std::string foreign_unit_in(const std::string& line) {
     }
     if (word.back() == '.') word.pop_back();
     if (!number && is_foreign_unit(word)) return word;
-    number = dem::parse_number(word).has_value();
+    number = parse_number(word).has_value();
     word.clear();
   }
   return "";

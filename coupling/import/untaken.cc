@@ -74,7 +74,7 @@ struct Component {
 std::optional<Component> component_of(const std::string& name) {
   const std::size_t open = name.rfind('[');
   if (open == std::string::npos || open == 0 || name.back() != ']') return std::nullopt;
-  const auto number = dem::parse_integer(name.substr(open + 1, name.size() - open - 2));
+  const auto number = parse_integer(name.substr(open + 1, name.size() - open - 2));
   if (!number || *number < 0 || *number > 1000) return std::nullopt;
   return Component{name.substr(0, open), static_cast<int>(*number)};
 }

@@ -189,8 +189,8 @@ class XmlReader {
       for (const std::string_view line : lines) {
         split(line, ' ', words);
         for (const std::string_view word : words) {
-          const auto number = dem::parse_number(word);
-          const auto whole = dem::parse_integer(word);
+          const auto number = parse_number(word);
+          const auto whole = parse_integer(word);
           if (!number || (!type.real && !whole))
             refuse(fmt::format("array {}: found \"{}\", expected numbers", out.name,
                                word.substr(0, 40)));

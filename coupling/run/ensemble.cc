@@ -367,7 +367,7 @@ double cpu_seconds(const std::string& file) {
   std::ifstream in(cpu_file(file));
   std::string seconds;
   in >> seconds;
-  return dem::parse_number(seconds).value_or(std::numeric_limits<double>::quiet_NaN());
+  return parse_number(seconds).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace grainfield::coupling

@@ -338,10 +338,8 @@ void analyse_all(const Case& value, const std::vector<SweepCase>& members, const
     });
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(e.what() + kept);
-  } catch (const continuum::ComputationFailed& e) {
-    throw continuum::ComputationFailed(e.what() + kept);
-  } catch (const dem::ComputationFailed& e) {
-    throw dem::ComputationFailed(e.what() + kept);
+  } catch (const ComputationFailed& e) {
+    throw ComputationFailed(e.what() + kept);
   } catch (const dem::StorageFailed& e) {
     throw dem::StorageFailed(e.what() + kept);
   } catch (const std::runtime_error& e) {

@@ -30,14 +30,13 @@ double mean_known(const std::vector<double>& values) {
                                    const std::string& where) {
   const auto at = field.attributes.find(name);
   if (at != field.attributes.end()) {
-    refuse_field(where, fmt::format("attribute \"{}\": found \"{}\", expected a {}", name,
-                                    attribute_text(at->second),
-                                    at->second.index() == 0 ? "number" : "text"));
+    refuse(where,
+           fmt::format("attribute \"{}\": found \"{}\", expected a {}", name,
+                       attribute_text(at->second), at->second.index() == 0 ? "number" : "text"));
   }
-  refuse_field(where,
-               fmt::format("has no attribute \"{}\"; fields come from `grainfield run` or "
-                           "`grainfield average` (of heaps: --frame heap; of loads: --response)",
-                           name));
+  refuse(where, fmt::format("has no attribute \"{}\"; fields come from `grainfield run` or "
+                            "`grainfield average` (of heaps: --frame heap; of loads: --response)",
+                            name));
 }
 
 // One number per realization; one alone is that of all.
@@ -48,8 +47,8 @@ std::vector<double> numbers(const Field& field, const std::string& name, std::si
   if (each == nullptr || each->size() == 1 || count == 1)
     return std::vector<double>(count, mean_of_all);
   if (each->size() != count) {
-    refuse_field(where, fmt::format("attribute \"{}\": found {} numbers, expected {}", name,
-                                    each->size(), count));
+    refuse(where, fmt::format("attribute \"{}\": found {} numbers, expected {}", name, each->size(),
+                              count));
   }
   return *each;
 }
@@ -98,22 +97,20 @@ void require_compression(const Field& field, const std::string& where) {
   for (const double v : column->value) sum += std::isfinite(v) ? v : 0;
   if (!(sum > 0)) return;
   if (field.is_measured()) {
-    refuse_field(where,
-                 "the measured pressures are negative in the mean: a pressure is positive where "
-                 "the heap presses; turn their signs");
+    refuse(where,
+           "the measured pressures are negative in the mean: a pressure is positive where "
+           "the heap presses; turn their signs");
   }
-  refuse_field(
-      where,
-      "sigma_yy is tension (positive) in the mean: the contacts of the packings pull; forces "
-      "count on grain i, by j; turn their sign (import --flip-forces) and average anew");
+  refuse(where,
+         "sigma_yy is tension (positive) in the mean: the contacts of the packings pull; forces "
+         "count on grain i, by j; turn their sign (import --flip-forces) and average anew");
 }
 
 HeapFieldFacts heap_field_facts(const Field& field, std::size_t count, const std::string& where) {
   if (!field.is_of_heap()) {
-    refuse_field(where,
-                 fmt::format("found frame \"{}\", needed: that of a heap (`grainfield average "
-                             "--frame heap`)",
-                             field_word(field, "frame", where)));
+    refuse(where, fmt::format("found frame \"{}\", needed: that of a heap (`grainfield average "
+                              "--frame heap`)",
+                              field_word(field, "frame", where)));
   }
   HeapFieldFacts out;
   out.height = numbers(field, field.has("heap.h") ? "heap.h" : "h", count, where);
@@ -122,7 +119,7 @@ HeapFieldFacts heap_field_facts(const Field& field, std::size_t count, const std
   out.right_deg = slopes(field, "right_deg", count, where);
   for (std::size_t r = 0; r < count; ++r) {
     if (!(out.height[r] > 0 && out.pressure[r] > 0)) {
-      refuse_field(where, "attributes \"h\" and \"rho_g_h\" must be above 0");
+      refuse(where, "attributes \"h\" and \"rho_g_h\" must be above 0");
     }
   }
   return out;

@@ -6,13 +6,9 @@
 
 #include "coupling/base/field.h"
 #include "coupling/specimen/pile_frame.h"
+#include "dem/shared/refuse.h"
 
 namespace grainfield::coupling {
-
-/// Throws std::invalid_argument: "where: what", of a field that cannot be used.
-[[noreturn]] inline void refuse_field(const std::string& where, const std::string& what) {
-  throw std::invalid_argument(where + ": " + what);
-}
 
 /// What to do with a cone, which fits do not take.
 inline constexpr const char* kCompareCones =

@@ -33,7 +33,7 @@ std::optional<std::vector<double>> numbers_in(const std::string& text) {
   std::istringstream items(text);
   for (std::string item; std::getline(items, item, ',');) {
     const std::size_t first = std::min(item.find_first_not_of(' '), item.size());
-    const std::optional<double> number = dem::parse_number(item.substr(first));
+    const std::optional<double> number = parse_number(item.substr(first));
     if (!number) return std::nullopt;
     out.push_back(*number);
   }

@@ -89,7 +89,7 @@ Force over_rings(const std::vector<LevelPressure>& level) {
 
 // "13870", for a command line.
 std::string four_digits(double value) {
-  return fmt::format("{}", dem::parse_number(fmt::format("{:.4g}", value)).value_or(value));
+  return fmt::format("{}", parse_number(fmt::format("{:.4g}", value)).value_or(value));
 }
 
 Force force_of(const std::vector<LevelPressure>& level, int dim) {

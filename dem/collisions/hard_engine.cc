@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "dem/collisions/sliding.h"
-#include "dem/computation_failed.h"
+#include "dem/shared/computation_failed.h"
 
 namespace grainfield::dem {
 namespace {

@@ -14,12 +14,12 @@
 #include <string>
 #include <vector>
 
-#include "dem/computation_failed.h"
 #include "dem/engine/contact_losses.h"
 #include "dem/laws/materials.h"
 #include "dem/motion/applied_force.h"
 #include "dem/motion/registry.h"
 #include "dem/shapes/registry.h"
+#include "dem/shared/computation_failed.h"
 #include "dem/sleep/sleep_settings.h"
 #include "dem/snapshot/cell_stress.h"
 #include "dem/snapshot/snapshot.h"

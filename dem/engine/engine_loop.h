@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "dem/checkpoint/checkpoint.h"
-#include "dem/computation_failed.h"
 #include "dem/engine/add_forces.h"
 #include "dem/engine/added_checkpoint.h"
 #include "dem/engine/added_forces.h"
@@ -31,6 +30,7 @@
 #include "dem/engine/world_checkpoint.h"
 #include "dem/shapes/polygon.h"
 #include "dem/shapes/solid.h"
+#include "dem/shared/computation_failed.h"
 
 namespace grainfield::dem {
 

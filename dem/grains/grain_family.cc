@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "dem/shapes/polygon.h"
+#include "dem/shared/refuse.h"
 #include "dem/space/elementary.h"
 
 namespace grainfield::dem {
@@ -25,14 +26,6 @@ constexpr double kMostAxisRatio = 5;
 constexpr double kMostPolydispersity = 0.99;
 // Of an outline's farthest corner over the radius, and of its inverse.
 constexpr double kMostStretch = 5;
-
-template <class Value>
-void require(bool holds, const char* key, const Value& found, const std::string& allowed) {
-  if (!holds) {
-    throw std::invalid_argument(
-        fmt::format("shape.{}: found {:g}, allowed: {}", key, 1.0 * found, allowed));
-  }
-}
 
 // n gaps (radians, sum 2 pi) between independent uniform angles, given that each lies between
 // kLeastGap and kMostGap mean gaps. Given the lower bound alone they are the least gap plus shares
@@ -140,23 +133,23 @@ NewGrain ShapedGrain::at(double x, double y, double density) const {
 }
 
 void check_shape(const ShapeSetup& s) {
-  require(s.radius > 0 && std::isfinite(s.radius), "radius", s.radius, "above 0");
-  require(s.polydispersity >= 0 && s.polydispersity <= kMostPolydispersity, "polydispersity",
+  require(s.radius > 0 && std::isfinite(s.radius), "shape.radius", s.radius, "above 0");
+  require(s.polydispersity >= 0 && s.polydispersity <= kMostPolydispersity, "shape.polydispersity",
           s.polydispersity,
           fmt::format("0 to {:g} (radii are uniform in radius (1 -+ polydispersity))",
                       kMostPolydispersity));
   if (s.kind == "rand1" || s.kind == "regular") {
-    require(s.corners_min >= 3, "corners_min", s.corners_min, "3 or more");
-    require(s.corners_max >= s.corners_min, "corners_max", s.corners_max,
+    require(s.corners_min >= 3, "shape.corners_min", s.corners_min, "3 or more");
+    require(s.corners_max >= s.corners_min, "shape.corners_max", s.corners_max,
             fmt::format("at least shape.corners_min = {}", s.corners_min));
-    require(s.corners_max <= kMostCorners, "corners_max", s.corners_max,
+    require(s.corners_max <= kMostCorners, "shape.corners_max", s.corners_max,
             fmt::format("at most {}", kMostCorners));
   }
   if (s.kind == "rand1") {
-    require(s.axis_ratio >= 1 && s.axis_ratio <= kMostAxisRatio, "axis_ratio", s.axis_ratio,
+    require(s.axis_ratio >= 1 && s.axis_ratio <= kMostAxisRatio, "shape.axis_ratio", s.axis_ratio,
             fmt::format("1 to {:g} (major over minor axis)", kMostAxisRatio));
   } else {
-    require(s.axis_ratio == 1, "axis_ratio", s.axis_ratio,
+    require(s.axis_ratio == 1, "shape.axis_ratio", s.axis_ratio,
             "1, because only grains of shape.kind \"rand1\" are stretched");
   }
   if (s.kind != "outline" && !s.outline.empty()) {
@@ -166,11 +159,11 @@ void check_shape(const ShapeSetup& s) {
         s.outline.size(), s.kind));
   }
   if (s.kind != "irregular") {
-    require(s.side == 0, "side", s.side,
+    require(s.side == 0, "shape.side", s.side,
             "0, because only grains of shape.kind \"irregular\" have it; set shape.radius");
   }
   if (s.kind == "irregular") {
-    require(s.side >= 0 && std::isfinite(s.side), "side", s.side,
+    require(s.side >= 0 && std::isfinite(s.side), "shape.side", s.side,
             "above 0, or 0 to take it from shape.radius");
   } else if (s.kind == "outline") {
     if (s.outline.size() % 2 != 0) {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dem/shared/refuse.h"
 #include "dem/space/rotation.h"
 
 namespace grainfield::dem {
@@ -16,13 +17,6 @@ constexpr double kOnSlope = 1e-9;
 // Wider gaps: at sqrt 3 the rows would fall into one another.
 constexpr double kMostGap = 0.5;
 
-void require(bool holds, const char* key, double found, const char* allowed) {
-  if (!holds) {
-    throw std::invalid_argument(
-        fmt::format("lattice.{}: found {:g}, allowed: {}", key, found, allowed));
-  }
-}
-
 // Spacings by which a row leaves more to either side than the lattice does, over the row's number.
 double more_per_row(double slope_deg) {
   const auto [c, sine] = rotation_of(slope_deg * std::numbers::pi / 180);
@@ -32,13 +26,14 @@ double more_per_row(double slope_deg) {
 }  // namespace
 
 void check_lattice(const LatticeSetup& s) {
-  require(s.base_grains >= 1, "base_grains", s.base_grains, "1 or more");
-  require(s.slope_deg > 0 && s.slope_deg <= 60, "slope_deg", s.slope_deg, "above 0, at most 60");
-  require(s.top_slope_deg >= 0 && s.top_slope_deg <= 60, "top_slope_deg", s.top_slope_deg,
+  require(s.base_grains >= 1, "lattice.base_grains", s.base_grains, "1 or more");
+  require(s.slope_deg > 0 && s.slope_deg <= 60, "lattice.slope_deg", s.slope_deg,
+          "above 0, at most 60");
+  require(s.top_slope_deg >= 0 && s.top_slope_deg <= 60, "lattice.top_slope_deg", s.top_slope_deg,
           "0 (no bend), or above 0, at most 60");
-  require(s.bend >= 0 && s.bend < 0.5, "bend", s.bend, "0 to below 0.5");
-  require(s.radius > 0, "radius", s.radius, "above 0");
-  require(s.gap >= 0 && s.gap <= kMostGap, "gap", s.gap, "0 to 0.5");
+  require(s.bend >= 0 && s.bend < 0.5, "lattice.bend", s.bend, "0 to below 0.5");
+  require(s.radius > 0, "lattice.radius", s.radius, "above 0");
+  require(s.gap >= 0 && s.gap <= kMostGap, "lattice.gap", s.gap, "0 to 0.5");
 }
 
 std::vector<int> lattice_rows(const LatticeSetup& s) {

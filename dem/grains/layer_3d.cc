@@ -10,6 +10,7 @@
 #include "dem/grains/loose.h"
 #include "dem/grains/reach.h"
 #include "dem/grains/superellipsoid_family.h"
+#include "dem/shared/refuse.h"
 
 namespace grainfield::dem {
 namespace {
@@ -26,27 +27,24 @@ double volume_of(double radius) { return 4.0 / 3 * std::numbers::pi * radius * r
 
 bool is_lattice(const PackingSetup& p) { return p.kind == "close_packed"; }
 
-void refuse(const char* key, const std::string& found, const std::string& allowed) {
-  throw std::invalid_argument(
-      fmt::format("packing.{}: found {}, allowed: {}", key, found, allowed));
-}
-
 void check_lattice(const PackingSetup& p) {
   if (p.sizes != "mono")
-    refuse("sizes", p.sizes, "mono, because packing.kind = close_packed is a lattice");
+    refuse("packing.sizes", p.sizes, "mono, because packing.kind = close_packed is a lattice");
   if (p.columns < kLeastDiameters) {
-    refuse("columns", fmt::format("{}", p.columns), fmt::format("{:g} or more", kLeastDiameters));
+    refuse("packing.columns", fmt::format("{}", p.columns),
+           fmt::format("{:g} or more", kLeastDiameters));
   }
-  if (p.rows < 1) refuse("rows", fmt::format("{}", p.rows), "1 or more");
+  if (p.rows < 1) refuse("packing.rows", fmt::format("{}", p.rows), "1 or more");
   if (!(p.jitter >= 0 && p.jitter < 0.5)) {
-    refuse("jitter", fmt::format("{:g}", p.jitter), "0 to below 0.5");
+    refuse("packing.jitter", fmt::format("{:g}", p.jitter), "0 to below 0.5");
   }
   if (!(p.spacing >= kLeastSpacing && p.spacing <= 1)) {
-    refuse("spacing", fmt::format("{:g}", p.spacing),
+    refuse("packing.spacing", fmt::format("{:g}", p.spacing),
            fmt::format("{:g} to 1 with packing.kind = close_packed", kLeastSpacing));
   }
   if (p.spacing < 1 && p.sides != "periodic") {
-    refuse("spacing", fmt::format("{:g}", p.spacing), "1 between walls, which would be overlapped");
+    refuse("packing.spacing", fmt::format("{:g}", p.spacing),
+           "1 between walls, which would be overlapped");
   }
 }
 
@@ -56,11 +54,11 @@ SuperellipsoidFamily family_of(const PackingSetup& p) {
 
 void check_family(const PackingSetup& p) {
   if (p.axis_min > p.axis_max) {
-    refuse("axis_min", fmt::format("{:g}", p.axis_min),
+    refuse("packing.axis_min", fmt::format("{:g}", p.axis_min),
            fmt::format("up to packing.axis_max = {:g}", p.axis_max));
   }
   if (p.exponent_min > p.exponent_max) {
-    refuse("exponent_min", fmt::format("{:g}", p.exponent_min),
+    refuse("packing.exponent_min", fmt::format("{:g}", p.exponent_min),
            fmt::format("up to packing.exponent_max = {:g}", p.exponent_max));
   }
 }
@@ -76,20 +74,20 @@ double floor_gap(const PackingSetup& p);
 void check_random(const PackingSetup& p) {
   const double most = farthest_reach(p);
   if (!(p.width >= 2 * kLeastDiameters * most)) {
-    refuse("width", fmt::format("{:g}", p.width),
+    refuse("packing.width", fmt::format("{:g}", p.width),
            fmt::format("at least {:g} of the largest diameters", kLeastDiameters));
   }
   if (!(p.depth >= 2 * most)) {
-    refuse("depth", fmt::format("{:g}", p.depth), "at least one grain diameter");
+    refuse("packing.depth", fmt::format("{:g}", p.depth), "at least one grain diameter");
   }
   if (p.floor == "rough" && least_reach(p) + largest_radius(p) <= floor_gap(p)) {
-    refuse("floor", "rough",
+    refuse("packing.floor", "rough",
            fmt::format("smooth with grains down to {:.3g} m, which fall between floor spheres of "
                        "{:.3g} m",
                        least_reach(p), largest_radius(p)));
   }
   if (p.sizes == "uniform" && p.radius_max < p.radius_min) {
-    refuse("radius_max", fmt::format("{:g}", p.radius_max), "at least packing.radius_min");
+    refuse("packing.radius_max", fmt::format("{:g}", p.radius_max), "at least packing.radius_min");
   }
 }
 
@@ -182,16 +180,16 @@ std::vector<NewGrain> lattice(const PackingSetup& p, double density, Random& ran
 
 void check_layer_3d(const PackingSetup& p) {
   if (p.kind != "close_packed" && p.kind != "random") {
-    refuse("kind", p.kind, "close_packed, random with packing.dim = 3");
+    refuse("packing.kind", p.kind, "close_packed, random with packing.dim = 3");
   }
   if (!(smallest_radius(p) > 0)) {
-    refuse("radius", fmt::format("{:g}", smallest_radius(p)), "above 0");
+    refuse("packing.radius", fmt::format("{:g}", smallest_radius(p)), "above 0");
   }
   if (p.shape == "irregular")
-    refuse("shape", p.shape, "disk | superellipsoid with packing.dim = 3");
+    refuse("packing.shape", p.shape, "disk | superellipsoid with packing.dim = 3");
   if (p.shape == "superellipsoid") {
     if (is_lattice(p))
-      refuse("shape", p.shape, "disk, because packing.kind = close_packed is a lattice");
+      refuse("packing.shape", p.shape, "disk, because packing.kind = close_packed is a lattice");
     check_family(p);
   }
   is_lattice(p) ? check_lattice(p) : check_random(p);

@@ -7,16 +7,10 @@
 
 #include "dem/grains/layer_3d.h"
 #include "dem/grains/placed.h"
+#include "dem/shared/refuse.h"
 
 namespace grainfield::dem {
 namespace {
-
-void require(bool holds, const char* key, double found, const char* allowed) {
-  if (!holds) {
-    throw std::invalid_argument(
-        fmt::format("packing.{}: found {:g}, allowed: {}", key, found, allowed));
-  }
-}
 
 NewGrain grain_at(double x, double y, double radius, double density) {
   NewGrain g;
@@ -66,29 +60,32 @@ ShapeSetup pentagon(const PackingSetup& p) {
 void check_packing(const PackingSetup& p) {
   if (p.dim == 3) return check_layer_3d(p);
   if (p.kind == "layered") {
-    require(p.width >= 4 * largest_radius(p), "width", p.width, "at least two grain diameters");
-    require(p.depth >= 2 * largest_radius(p), "depth", p.depth, "at least one grain diameter");
-    require(p.drop_height >= 0, "drop_height", p.drop_height, "0 or more");
-    if (p.shape == "irregular") require(p.side > 0, "side", p.side, "above 0");
+    require(p.width >= 4 * largest_radius(p), "packing.width", p.width,
+            "at least two grain diameters");
+    require(p.depth >= 2 * largest_radius(p), "packing.depth", p.depth,
+            "at least one grain diameter");
+    require(p.drop_height >= 0, "packing.drop_height", p.drop_height, "0 or more");
+    if (p.shape == "irregular") require(p.side > 0, "packing.side", p.side, "above 0");
   } else {
     if (p.shape != "disk") {
       throw std::invalid_argument(fmt::format(
           "packing.shape: found {}, allowed: disk, because packing.kind = {} is a lattice", p.shape,
           p.kind));
     }
-    require(p.columns >= 2, "columns", p.columns, "2 or more");
-    require(p.rows >= 1, "rows", p.rows, "1 or more");
+    require(p.columns >= 2, "packing.columns", p.columns, "2 or more");
+    require(p.rows >= 1, "packing.rows", p.rows, "1 or more");
     if (p.sizes != "mono") {
       throw std::invalid_argument(fmt::format(
           "packing.sizes: found {}, allowed: mono, because packing.kind = {} is a lattice", p.sizes,
           p.kind));
     }
-    require(p.spacing > 0.7 && p.spacing <= 1, "spacing", p.spacing, "above 0.7, at most 1");
-    require(p.jitter >= 0 && p.jitter < 0.5, "jitter", p.jitter, "0 to below 0.5");
+    require(p.spacing > 0.7 && p.spacing <= 1, "packing.spacing", p.spacing,
+            "above 0.7, at most 1");
+    require(p.jitter >= 0 && p.jitter < 0.5, "packing.jitter", p.jitter, "0 to below 0.5");
   }
-  require(smallest_radius(p) > 0, "radius", smallest_radius(p), "above 0");
+  require(smallest_radius(p) > 0, "packing.radius", smallest_radius(p), "above 0");
   if (p.sizes == "uniform") {
-    require(p.radius_max >= p.radius_min, "radius_max", p.radius_max,
+    require(p.radius_max >= p.radius_min, "packing.radius_max", p.radius_max,
             "at least packing.radius_min");
   }
 }

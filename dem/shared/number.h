@@ -10,7 +10,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace grainfield::dem {
+namespace grainfield {
 
 /// The number that the whole text is, in any locale, also "nan", "inf", a subnormal one, and 0 for
 /// one too small; nothing for other text, none, or a number too large.
@@ -37,4 +37,4 @@ inline std::optional<long long> parse_integer(std::string_view text) {
   return value;
 }
 
-}  // namespace grainfield::dem
+}  // namespace grainfield

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "dem/shared/refuse.h"
 #include "dem/snapshot/images.h"
 #include "dem/snapshot/limits.h"
 
@@ -17,10 +18,6 @@ namespace {
 
 // Area or volume of the periodic edges over the product of their lengths: less is flat.
 constexpr double kFlat = 1e-9;
-
-[[noreturn]] void refuse(const std::string& where, const std::string& what) {
-  throw std::invalid_argument(fmt::format("{}: {}", where, what));
-}
 
 // Written by another program they need not be in ascending order.
 void check_ids(const Snapshot& s, const std::string& where) {

@@ -22,13 +22,13 @@
 
 #include "coupling/specimen/relaxation.h"
 #include "coupling/studies/pile/simulation.h"
-#include "dem/computation_failed.h"
 #include "dem/engine/engine.h"
 #include "dem/grains/grain_family.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/random/random.h"
 #include "dem/run/common.h"
 #include "dem/run/setup.h"
+#include "dem/shared/computation_failed.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace {
@@ -125,7 +125,7 @@ dem::Snapshot relaxed(const dem::Snapshot& heap, const dem::EngineSettings& sett
         "  newton: {} iterations, {} contacts gained, {} lost, a grain moves by {:.3f} radii",
         r.iterations, r.contacts_gained, r.contacts_lost, moved);
     state = std::move(r.state);
-  } catch (const dem::ComputationFailed& failure) {
+  } catch (const grainfield::ComputationFailed& failure) {
     fmt::print("  newton: {}", failure.what());
     ++out.failed;
   }

@@ -25,7 +25,7 @@ void choose(const std::string& line, coupling::ImportOptions& options) {
   if (name == "column") options.columns.push_back(value);
   if (name == "periodic") options.periodic.push_back(coupling::parse_periodic(value));
   if (name == "dim") options.dim = value == "3" ? 3 : 2;
-  if (name == "density") options.density = dem::parse_number(value).value_or(0);
+  if (name == "density") options.density = parse_number(value).value_or(0);
   if (name == "fixed") {
     const std::size_t equals = std::min(value.find('='), value.size());
     options.fixed_column = value.substr(0, equals);

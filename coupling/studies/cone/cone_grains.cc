@@ -11,6 +11,7 @@
 #include "dem/grains/reach.h"
 #include "dem/run/common.h"
 #include "dem/run/softness.h"
+#include "dem/shared/refuse.h"
 
 namespace grainfield::dem {
 namespace {
@@ -25,10 +26,6 @@ constexpr double kHighFall = 40;
 constexpr double kMostCells = 1000;
 // A grain or a wall passes less than this share of the least radius in a step.
 constexpr double kMostWay = 0.25;
-
-[[noreturn]] void refuse(const char* key, const std::string& text) {
-  throw std::invalid_argument(fmt::format("cone.{}: {}", key, text));
-}
 
 bool is_sphere(const ConePlan& plan) { return plan.shape == "sphere"; }
 
@@ -103,7 +100,8 @@ double meeting_speed(const ConeSetup& s) {
 
 void check_order(const char* less, double least, const char* more, double most) {
   if (least <= most) return;
-  refuse(less, fmt::format("found {:g}, allowed: up to cone.{} = {:g}", least, more, most));
+  refuse(std::string("cone.") + less,
+         fmt::format("found {:g}, allowed: up to cone.{} = {:g}", least, more, most));
 }
 
 }  // namespace
@@ -122,7 +120,7 @@ void check_cone(const ConeSetup& s) {
   }
   if (!is_sphere(p)) {
     if (p.source == "cylinder") {
-      refuse("source",
+      refuse("cone.source",
              "found cylinder, allowed with cone.shape = superellipsoid: point | rain (walls of "
              "superellipsoids are planes)");
     }
@@ -137,7 +135,8 @@ void check_cone(const ConeSetup& s) {
   const double most = sample_radii(as_sample(p)).most;
   const auto at_least = [&](const char* key, double found, double least, const char* why) {
     if (found >= least) return;
-    refuse(key, fmt::format("found {:g}, allowed: at least {:.4g} m, {}", found, least, why));
+    refuse(std::string("cone.") + key,
+           fmt::format("found {:g}, allowed: at least {:.4g} m, {}", found, least, why));
   };
   const bool cylinder = p.source == "cylinder";
   if (p.source != "rain") {
@@ -149,7 +148,7 @@ void check_cone(const ConeSetup& s) {
   at_least("drop", p.drop, 2 * most, "twice the largest radius");
   const double fixed = floor_grains_of(p);
   if (fixed > kMostGrains) {
-    refuse("floor_radius",
+    refuse("cone.floor_radius",
            fmt::format("found {:g}, allowed: up to {:.3g} m with grains of this "
                        "size on a rough floor: ten million grains",
                        p.floor_radius, p.floor_radius * std::sqrt(kMostGrains / fixed)));
@@ -186,9 +185,10 @@ EngineSettings cone_settings(const ConeSetup& s, const std::vector<ShapedGrain>&
   const double most = kMostWay * sample_radii(as_sample(p)).least / out.time_step;
   const auto check_speed = [&](const char* key, double found, double speed) {
     if (speed <= most) return;
-    refuse(key, fmt::format("found {:g}, allowed: so that nothing moves at more than {:.3g} m/s, a "
-                            "quarter of the least radius in a step of {:.3g} s",
-                            found, most, out.time_step));
+    refuse(std::string("cone.") + key,
+           fmt::format("found {:g}, allowed: so that nothing moves at more than {:.3g} m/s, a "
+                       "quarter of the least radius in a step of {:.3g} s",
+                       found, most, out.time_step));
   };
   if (p.source == "cylinder") check_speed("lift_speed", p.lift_speed, p.lift_speed);
   check_speed("speed", p.speed, p.speed);

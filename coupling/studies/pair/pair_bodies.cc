@@ -11,6 +11,7 @@
 #include "dem/grains/grain_family.h"
 #include "dem/motion/motion_setup.h"
 #include "dem/run/common.h"
+#include "dem/shared/refuse.h"
 #include "dem/space/rotation.h"
 
 namespace grainfield::dem {
@@ -48,11 +49,6 @@ void set_spin(const std::vector<double>& spin, bool in_space, NewGrain& g) {
 double mass_of(const PairSetup& s, const ShapedGrain& g) {
   const double r = g.radius;
   return s.material.density * (s.is_3d() ? 4.0 / 3 * std::numbers::pi * r * r * r : g.area);
-}
-
-[[noreturn]] void refuse(const std::string& key, const std::string& found,
-                         const std::string& allowed) {
-  throw std::invalid_argument(fmt::format("{}: found {}, allowed: {}", key, found, allowed));
 }
 
 void check_spin(const char* key, const std::vector<double>& spin, bool in_space) {

@@ -12,6 +12,7 @@
 #include "dem/pouring/funnel.h"
 #include "dem/pouring/source.h"
 #include "dem/run/common.h"
+#include "dem/shared/refuse.h"
 
 namespace grainfield::dem {
 namespace {
@@ -28,12 +29,6 @@ constexpr double kMostNotPoured = 0.2;
 constexpr double kMostWaiting = 2;
 // Of the pile's weight, and what a few strays that rolled to the wall may press on it besides.
 constexpr double kMostLean = 1e-3, kStrays = 3, kMostOfStrays = 4e-3;
-
-void require(bool holds, const char* key, double found, const std::string& allowed) {
-  if (!holds) {
-    throw std::invalid_argument(fmt::format("{}: found {:g}, allowed: {}", key, found, allowed));
-  }
-}
 
 void require_word(const std::string& found, const char* key,
                   const std::vector<std::string>& allowed) {

@@ -16,7 +16,7 @@ namespace {
 double attribute(const dem::Snapshot& s, const char* name, bool may_lack = false) {
   const auto at = s.attributes.find(name);
   if (at != s.attributes.end()) {
-    if (const auto number = dem::parse_number(at->second)) return *number;
+    if (const auto number = parse_number(at->second)) return *number;
   }
   if (may_lack && at == s.attributes.end()) return kNan;
   throw std::invalid_argument(

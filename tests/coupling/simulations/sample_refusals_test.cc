@@ -9,7 +9,7 @@
 #include "coupling/studies/sample/simulation/goal.h"
 #include "coupling/studies/sample/simulation/grains.h"
 #include "coupling/studies/sample/simulation/sample.h"
-#include "dem/computation_failed.h"
+#include "dem/shared/computation_failed.h"
 
 namespace grainfield::dem {
 namespace {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "dem/computation_failed.h"
 #include "dem/random/random.h"
+#include "dem/shared/computation_failed.h"
 #include "tests/dem/implicit_scene.h"
 
 namespace grainfield::dem::testing {
