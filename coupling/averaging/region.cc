@@ -94,7 +94,7 @@ double square_in_box(double w, const Vector3d& low, const Vector3d& high, int di
   return product;
 }
 
-// Of two spheres whose centres are `distance` apart: two caps on either side of their common plane.
+// Two spheres whose centres are `distance` apart share two caps on either side of a common plane.
 double ball_in_ball(double distance, double r1, double r2) {
   const double small = std::min(r1, r2);
   if (distance >= r1 + r2) return 0;

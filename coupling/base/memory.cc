@@ -27,7 +27,7 @@ double number_in(const fs::path& file) {
   return bytes > 0 ? bytes : kUnlimited;
 }
 
-// Of this process's control group and all above it.
+// The least limit of this process's control group and all above it.
 double group_limit() {
   double least = number_in("/sys/fs/cgroup/memory/memory.limit_in_bytes");  // version 1
   std::ifstream groups("/proc/self/cgroup");

@@ -56,7 +56,7 @@ const std::vector<Meaning>& meanings_of_contacts() {
   return all;
 }
 
-// Of a size, which the components of a force tell, too.
+// The name of a size, which the components of a force tell, too.
 bool is_size_of_force(const std::string& plain) {
   static const std::regex sizes(
       "f|force|(f|force)(tot(al)?|abs|mag(nitude)?|norm|len(gth)?)|"

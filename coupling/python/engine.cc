@@ -55,7 +55,7 @@ dem::ShapeKind shape_of(const Snapshot& s) {
                                                               : dem::ShapeKind::sphere;
 }
 
-// Of the free grains; all polygons as light as the lightest for their size.
+// Extremes of the free grains; all polygons as light as the lightest for their size.
 dem::GrainExtremes extremes_of(const Snapshot& s, dem::ShapeKind shape) {
   if (shape == dem::ShapeKind::superellipsoid)
     throw std::invalid_argument(
@@ -78,7 +78,7 @@ dem::GrainExtremes extremes_of(const Snapshot& s, dem::ShapeKind shape) {
   return dem::extremes_of(shaped, least_density);
 }
 
-// Of the mean radius of the free grains.
+// A grain of the mean radius of the free grains.
 dem::RoundGrain mean_grain(const Snapshot& s) {
   double sum = 0, count = 0;
   for (const dem::Grain& g : s.grains) {

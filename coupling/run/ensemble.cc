@@ -96,7 +96,8 @@ class Worker {
     }
   }
 
-  // Of this rank's tasks, `done_before` of which are none of `mine`, after so many seconds.
+  // Progress of this rank's tasks, `done_before` of which are none of `mine`, after so many
+  // seconds.
   EnsembleProgress progress(const std::vector<std::size_t>& mine, std::size_t done_before,
                             double seconds) {
     EnsembleProgress out;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLevel = 0.05;  // two-sided
 
-// Of so few normal numbers the standard error itself is uncertain by 1/sqrt(2 (n - 1)).
+// The standard error of so few normal numbers is itself uncertain by 1/sqrt(2 (n - 1)).
 std::string few_realizations(int n) {
   if (n >= 5) return "";
   return fmt::format(", an error that is itself uncertain by {:.0f} %",

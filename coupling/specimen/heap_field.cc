@@ -14,7 +14,7 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// Of the realizations that have one; nan without any.
+// The mean of the realizations that have one; nan without any.
 double mean_known(const std::vector<double>& values) {
   double sum = 0;
   int count = 0;
@@ -53,7 +53,7 @@ std::vector<double> numbers(const Field& field, const std::string& name, std::si
   return *each;
 }
 
-// Of a side; of a cone, which has none, its own.
+// The slopes of a side; a cone, which has none, has its own.
 std::vector<double> slopes(const Field& field, std::string name, std::size_t count,
                            const std::string& where) {
   if (!field.has(name)) name = "repose_deg";

@@ -66,7 +66,7 @@ void check(const NamedFields& fields) {
   }
 }
 
-// Of a file that others may have written.
+// The numbers of a file that others may have written.
 void check_numbers(const Field& field, const std::string& where) {
   const auto refuse = [&](const std::string& what, double value, const char* allowed) {
     throw std::invalid_argument(

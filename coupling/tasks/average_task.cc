@@ -20,7 +20,7 @@
 namespace grainfield::coupling {
 namespace {
 
-// Of a grid where none is asked for, in the plane and in space.
+// Points of a grid where none is asked for, in the plane and in space.
 constexpr int kColumns = 81, kRows = 31, kSide = 31, kLayers = 21;
 
 // Where the rings' axis is, in the frame.

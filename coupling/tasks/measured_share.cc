@@ -52,7 +52,7 @@ struct Force {
   double value = 0, error = 0;
 };
 
-// Of pressures that are straight between the places: along x, N/m.
+// The force of pressures that are straight between the places: along x, N/m.
 Force along(const std::vector<LevelPressure>& level) {
   Force out;
   double variance = 0;

@@ -11,7 +11,7 @@ namespace grainfield::dem {
 namespace {
 
 constexpr long kEventsPerClock = 64;
-// Of one grain at one instant: more than a chain of grains needs that touch each other.
+// Collisions of one grain at one instant: more than a chain of grains needs that touch each other.
 constexpr std::int32_t kMostAtOnce = 1000;
 // Share of gravity along a wall that is round-off.
 constexpr double kLevel = 1e-12;

@@ -24,7 +24,7 @@ constexpr int kPentagon = 5;
 // none is a sliver for centred_outline, which refuses 20.
 constexpr double kMostAxisRatio = 5;
 constexpr double kMostPolydispersity = 0.99;
-// Of an outline's farthest corner over the radius, and of its inverse.
+// The bound of an outline's farthest corner over the radius, and of its inverse.
 constexpr double kMostStretch = 5;
 
 // n gaps (radians, sum 2 pi) between independent uniform angles, given that each lies between

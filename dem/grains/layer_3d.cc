@@ -20,7 +20,7 @@ namespace {
 constexpr double kLooseFraction = 0.25;
 // A cell must be wide enough that a sphere does not touch another and its image.
 constexpr double kLeastDiameters = 4;
-// Of neighbours in a close packed layer, over their diameter: closer ones overlap too much.
+// Distance of neighbours in a close packed layer over their diameter: closer ones overlap too much.
 constexpr double kLeastSpacing = 0.9;
 
 double volume_of(double radius) { return 4.0 / 3 * std::numbers::pi * radius * radius * radius; }
@@ -230,7 +230,7 @@ double mean_sphere_radius(const PackingSetup& p) {
 }
 
 double mean_sphere_volume(const PackingSetup& p) {
-  // Of superellipsoids that of spheres of the same sizes, times this.
+  // What spheres of the same sizes have, times this, is that of superellipsoids.
   const double shape = is_angular(p) ? mean_volume(family_of(p), 1) / volume_of(1) : 1;
   if (p.sizes == "bidisperse") {
     return shape * (p.fraction_small * volume_of(p.radius_small) +

@@ -34,7 +34,7 @@ class Bins {
     const auto home = bin_of(x);
     std::array<int, 3> low{}, high{};
     for (int a = 0; a < dim_; ++a) {
-      // Of fewer than three bins each is looked at once.
+      // Each of fewer than three bins is looked at once.
       const bool few = count_[a] < 3;
       low[a] = few ? 0 : home[a] - 1;
       high[a] = few ? count_[a] - 1 : home[a] + 1;

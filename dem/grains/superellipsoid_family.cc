@@ -71,7 +71,7 @@ GrainExtremes extremes_of_superellipsoids(const std::vector<ShapedGrain>& grains
   GrainExtremes extremes;
   for (const ShapedGrain& grain : grains) {
     const FeltMass felt = felt_mass(superellipsoid(grain.axes, grain.exponents), density);
-    // Of Hertz' laws the stiffness goes by the radius.
+    // The stiffness of Hertz' laws goes by the radius.
     const bool first = extremes.least_radius == 0;
     if (first || felt.mass * extremes.least_radius < extremes.least_mass * felt.radius) {
       extremes.least_mass = felt.mass;

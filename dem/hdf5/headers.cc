@@ -21,7 +21,7 @@ std::uint64_t little_endian(std::string_view bytes, std::size_t at, std::size_t 
   return out;
 }
 
-// Of the message's data. A version that HDF5 does not know is its own matter.
+// The message's data are given. A version that HDF5 does not know is its own matter.
 bool attribute_fits(std::string_view data) {
   const std::uint64_t version = data.empty() ? 0 : little_endian(data, 0, 1);
   const std::size_t begin = version == 3 ? 9 : 8;

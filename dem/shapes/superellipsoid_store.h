@@ -244,7 +244,7 @@ class SuperellipsoidStore {
                    Overlap& o) {
     feature.clear = std::numeric_limits<double>::infinity();
     if (!touches) {
-      // Of a search that ended exactly in touch nothing is known along the normal that it left.
+      // A search that ended exactly in touch tells nothing along the normal that it left.
       if (contact.depth < 0) {
         feature.clear = across.dot(feature.normal) + contact.depth - (first.swept + second.swept);
       }

@@ -161,7 +161,7 @@ void check_images(const Snapshot& s, const std::string& where) {
   }
 }
 
-// Of contact k, whose grains and image there are.
+// Contact k, whose grains and image there are.
 void check_contact(const Snapshot& s, std::size_t k, const std::string& where) {
   const Contact& c = s.contacts[k];
   if (!is_unit(c.normal))

@@ -60,7 +60,7 @@ const char* what_is_allowed(double found) {
   return std::isfinite(found) ? "of size 1e+100 at most" : "a finite number";
 }
 
-// Of an attribute.
+// The size of an attribute's number.
 void require_size(double found, const std::string& name, const std::string& where) {
   if (std::fabs(found) <= kMostNumber) return;
   throw std::invalid_argument(fmt::format("{}: attribute '{}' is {}; it must be {}", where, name,

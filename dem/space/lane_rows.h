@@ -12,8 +12,8 @@ struct Four {
 
 namespace lane_rows {
 
-// Of blocks of four rows by four columns; of eight lanes two blocks side by side, rows 0 to 3 and
-// 4 to 7. Its own inverse.
+// Blocks of four rows by four columns, turned; of eight lanes two blocks side by side, rows 0 to 3
+// and 4 to 7. Its own inverse.
 template <int W>
 [[gnu::always_inline]] inline Four<W> turned_about(const Four<W>& x) {
   if constexpr (W == 4) {

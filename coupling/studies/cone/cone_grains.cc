@@ -92,7 +92,7 @@ double expected_height(const ConePlan& p) {
   return std::cbrt(3 * kHeapSlope * kHeapSlope * volume / std::numbers::pi);
 }
 
-// Of a grain that falls onto the heap, m/s.
+// The speed of a grain that falls onto the heap, m/s.
 double meeting_speed(const ConeSetup& s) {
   const double fall = s.plan.drop + kColumn * sample_radii(as_sample(s.plan)).most;
   return std::sqrt(s.plan.speed * s.plan.speed + 2 * s.material.gravity * fall);
@@ -128,7 +128,7 @@ void check_cone(const ConeSetup& s) {
     check_order("axis_min", p.axis_min, "axis_max", p.axis_max);
     check_order("exponent_min", p.exponent_min, "exponent_max", p.exponent_max);
   }
-  // Of grains that start higher or faster than any need to, the speed itself is to blame.
+  // The speed itself is to blame where grains start higher or faster than any need to.
   const double height = expected_height(p), fall = height + kHighFall * p.radius;
   const double usual = std::sqrt(2 * s.material.gravity * fall);
   check_stiff_enough(s.material, {p.radius, height, std::min(usual, meeting_speed(s))});

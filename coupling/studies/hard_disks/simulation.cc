@@ -14,7 +14,7 @@
 namespace grainfield::dem {
 namespace {
 
-// Of a grain with its plans, entries of the heap and cells: about. Snapshots come beside it.
+// Bytes of a grain with its plans, entries of the heap and cells, about. Snapshots come beside it.
 constexpr double kBytesPerGrain = 500;
 // The box's side over the radius, at least: no pair meets by two images.
 constexpr double kLeastSide = 6.01;

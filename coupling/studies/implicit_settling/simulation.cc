@@ -32,7 +32,7 @@ namespace {
 
 // Rest is judged every so many steps.
 constexpr long kJudgeEvery = 20;
-// Of a disk with its contacts and their part of the factors: about.
+// Bytes of a disk with its contacts and their part of the factors, about.
 constexpr double kBytesOfSoftDisk = 8000;
 // A contact whose normal rises less than this is one of a row.
 constexpr double kRise = 0.5;

@@ -39,7 +39,8 @@ double length_in_grains(const PileSetup& s) {
   return count;
 }
 
-// Of all grains of a pile, m2: none is larger than the circle or ellipse that carries its corners.
+// The area of all grains of a pile, m2: none is larger than the circle or ellipse through its
+// corners.
 double most_area(const PileSetup& s) {
   if (s.shape.kind == "irregular" || s.shape.kind == "outline") {
     return std::numeric_limits<double>::infinity();

@@ -97,7 +97,7 @@ class PileChangeRun final : public ArchivedRun {
                                           [](const Grain& g) { return !g.fixed; }));
   }
 
-  // Of the material, with the time step that these grains bear.
+  // Settings of the material, with the time step that these grains bear.
   EngineSettings settings(int threads) const {
     std::vector<ShapedGrain> grains;
     bool polygons = false;

@@ -27,7 +27,8 @@ constexpr double kLineReserve = 2.5;
 constexpr double kMostNotPoured = 0.2;
 // s; a free fall through the largest funnel that makes sense takes a part of it.
 constexpr double kMostWaiting = 2;
-// Of the pile's weight, and what a few strays that rolled to the wall may press on it besides.
+// Shares of the pile's weight, and what a few strays that rolled to the wall may press on it
+// besides.
 constexpr double kMostLean = 1e-3, kStrays = 3, kMostOfStrays = 4e-3;
 
 void require_word(const std::string& found, const char* key,
@@ -85,8 +86,8 @@ std::vector<char> standing(const Snapshot& s) {
   return stands;
 }
 
-// Of any grain of a family whose outline is not given otherwise, m: so that no later realization is
-// refused what the first one may.
+// The diameter of any grain of a family whose outline is not given otherwise, m: no later
+// realization is refused what the first one may.
 double largest_diameter(const ShapeSetup& s) {
   if (s.kind == "irregular" || s.kind == "outline") return 0;
   // From its centroid a corner of RAND1 may be farther than from the ellipse's middle: triangles by

@@ -37,7 +37,7 @@ double friction_angle_deg(const StateFacts& f) {
   return std::fabs(sine) <= 1 ? std::asin(sine) * 180 / std::numbers::pi : kNan;
 }
 
-// Of an edge since the first state, logarithmic, extension positive.
+// The stretch of an edge since the first state, logarithmic, extension positive.
 double stretch(const StateFacts& f, int axis) {
   return std::log(f.now.edges(axis, axis) / f.first.edges(axis, axis));
 }

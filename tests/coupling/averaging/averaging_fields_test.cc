@@ -147,7 +147,7 @@ TEST(Averaging, FloorAndWallsCarryTheWeight) {
   }
 }
 
-// Of one grain on a floor: the traction's integral over the plane is the floor's force.
+// One grain on a floor: the traction's integral over the plane is the floor's force.
 TEST(Averaging, TractionIntegratesToTheFloorForce) {
   dem::Snapshot s = layer(5, 6, 3);
   const Eigen::MatrixXd grid = grid_points(-0.04, 0.1, 281, -0.04, 0.07, 221);

@@ -252,7 +252,7 @@ TEST(ImportVtkData, FilesWithoutAGrainInCommonArePiecesOfOneStep) {
                                             {"c_1.vtp", false, {}}});
   EXPECT_EQ(pieces.steps, Steps(4));
   EXPECT_THAT(pieces.notes, ::testing::ElementsAre(HasSubstr("are pieces of one step")));
-  // Of two numbers that is the step within which no grain is there twice.
+  // The step is that of two numbers within which no grain is there twice.
   const std::vector<NamedFile> both{{"g_0_100.vtp", true, low},
                                     {"g_1_100.vtp", true, high},
                                     {"g_0_200.vtp", true, low},

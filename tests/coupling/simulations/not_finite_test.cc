@@ -68,7 +68,7 @@ TEST(NotFinite, APlaceEndsTheRun) {
   PointLoadSetup s = small_layer();
   s.material.gravity = 1e308;
   EXPECT_THAT(failure(s), HasSubstr("diverged at t = "));
-  // Of several grains one: the engine names it.
+  // One of several grains: the engine names it.
   EngineSettings settings;
   settings.law = LinearLaw{};
   const auto engine = make_engine(settings);

@@ -48,7 +48,7 @@ PairSetup linear(const char* shape) {
   s.motion.time_step_fraction = 0.002;
   return s;
 }
-// Of two equal bodies.
+// The reduced mass of two equal bodies.
 double reduced_mass(const PairSetup& s) {
   const double r = s.radius;
   const double volume =
@@ -115,7 +115,7 @@ TEST(Pair, ClosedLoopsOfPolygons) {
   EXPECT_GT(figures_of(s).at("pair.loop_work_over_energy"), 0.02);
 }
 
-// Of bodies of unequal sizes none is swallowed all the way, and none stays apart.
+// Bodies of unequal sizes: none is swallowed all the way, and none stays apart.
 TEST(Pair, RandomLoopsCrossTheOutlineOfLargerAndSmallerBodies) {
   for (const double other : {0.0, 0.03, 0.002}) {
     PairSetup s;

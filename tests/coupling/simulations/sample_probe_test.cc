@@ -236,7 +236,7 @@ TEST(SampleProber, GoesOnFromAnyMoment) {
     run->advance(777);
     if (run->done()) break;
     const bool probing = run->progress().phase == "probe";
-    // Of the probes every second time, of the rest every twentieth.
+    // Every second time in the probes, every twentieth in the rest.
     if (++taken % (probing ? 2 : 20) != 0) continue;
     in_probes += probing;
     run->save(file);

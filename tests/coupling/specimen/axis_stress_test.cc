@@ -128,7 +128,7 @@ TEST(AxisStress, IsAFigureOfEveryPileWithItsError) {
   const auto number = [&](const std::string& key) {
     return std::get<double>(result.summary.at(key));
   };
-  // Of one lattice all ratios are k times the same number, 1 but for the lattice's steps.
+  // All ratios of one lattice are k times the same number, 1 but for the lattice's steps.
   const double lattice = number("axis.stress_ratio") / 0.6;
   EXPECT_NEAR(lattice, 1, 0.03);
   EXPECT_NEAR(number("axis.stress_ratio.least"), 0.4 * lattice, 1e-9);

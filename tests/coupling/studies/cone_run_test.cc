@@ -187,7 +187,7 @@ TEST_F(ConeRun, FilesOfOtherConesAreNamed) {
   }
 }
 
-// Of what is there, and of nothing that is not.
+// Warnings of what is there, and of nothing that is not.
 TEST_F(ConeRun, WarnsOfWhatToMind) {
   const std::string again = *folder_ / "wide";
   const Output run =

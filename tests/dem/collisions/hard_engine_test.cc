@@ -105,7 +105,7 @@ TEST(HardEngine, MissesNoCollision) {
   expect_every_collision<3>(false, -2);
 }
 
-// Of infinite mass: others bounce from it as from a wall.
+// Grains of infinite mass: others bounce from them as from a wall.
 TEST(HardEngine, GrainsOfInfiniteMassGoTheirWay) {
   HardScene<2> scene;
   scene.box.size = {10, 4};

@@ -137,7 +137,7 @@ TEST(Hdf5Headers, AFileWithSuchAnAttributeIsRefused) {
   grainfield::testing::copy_plainly(folder / "s.h5", plain);
   EXPECT_EQ(said_of(plain), "");
   const std::string bytes = bytes_of(plain);
-  // Of datasets and of groups; the datatype and the dataspace.
+  // Attributes of datasets and of groups; the datatype and the dataspace.
   int copies = 0;
   for (const char* name : {"unit", "time"}) {
     for (const std::size_t offset : {4, 6}) {

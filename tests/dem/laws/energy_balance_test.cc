@@ -201,7 +201,7 @@ TEST(EnergyBalance, HoldsTheFirstStepOfEachGrain) {
       engine->step(1);
       const Diagnostics after = engine->measure();
       const Grain now = engine->snapshot().grains[id];
-      // Of this grain alone: those before it move on under their own damping.
+      // This grain alone: those before it move on under their own damping.
       const double speed = g.vx * g.vx + 4, spin = g.spin * g.spin;
       const double drag = rate * (now.mass * speed + now.inertia * spin) + alpha * push * g.vx;
       if (k == 0) {

@@ -16,7 +16,7 @@
 namespace grainfield::dem {
 namespace {
 
-// Of a collision with a wall that moves, and in the frame in which the wall is at rest.
+// A collision with a wall that moves, and in the frame in which the wall is at rest.
 TEST(WallMotion, AMovingWallIsACollisionInItsFrame) {
   for (const int kind : {0, 1, 2}) {  // disk, sphere, polygon
     const bool space = kind == 1;

@@ -48,7 +48,7 @@ double sampled_distance(const Wall& w, const Vec3& at) {
   double least = 1e300;
   for (int k = 0; k <= 2000; ++k) {
     const double t = k / 2000.0, r = w.radius + t * (w.end_radius - w.radius);
-    // Of one circle the nearest point is in the half plane of the place.
+    // The nearest point of one circle is in the half plane of the place.
     const double z = at.dot(w.normal), rho = std::hypot(at.dot(across), at.dot(third));
     least = std::min(least, std::hypot(rho - r, z - t * w.length));
   }

@@ -314,7 +314,7 @@ void check_speeds(const SamplePlan& p, const std::array<double, 3>& box, double 
   check("strain_rate", p.strain_rate);
 }
 
-// Of the contacts of a mean grain, as a stress: Pa (N/m).
+// The stiffness of a mean grain's contacts, as a stress: Pa (N/m).
 double stiffness_of(const SampleSetup& s) {
   const double r = sample_radii(s.plan).mean;
   const double k =
@@ -368,7 +368,7 @@ SampleFrame sample_frame(const SampleSetup& s, const GrainExtremes& extremes, do
   const double ramp = p.boundary == "walls" ? 0.5 * p.ramp_time : 0;
   out.deformation_time = p.strain / p.strain_rate + ramp;
   if (p.precompression > 0) out.deformation_time += p.precompression / p.strain_rate + ramp;
-  // Of an unloading to a stress at most, about: the strain.
+  // The strain of an unloading to a stress, at most, about.
   if (unloads(p)) {
     const double back = p.unload == "strain" ? p.unload_strain : 1;
     out.deformation_time += back * p.strain / p.strain_rate + ramp;

@@ -37,7 +37,7 @@ std::pair<int, int> axes_of(const std::string& direction) {
   return {direction[0] - 'x', direction[1] - 'x'};
 }
 
-// Of a probe's motion.
+// The steps of a probe's motion.
 long steps_of_probe(const SampleSetup& s, double time_step) {
   const double steps = std::ceil(kProbeTime / s.rest.background_damping / time_step);
   return std::max(kProbeSteps, static_cast<long>(steps));

@@ -135,7 +135,7 @@ class SampleRun final : public ArchivedRun {
   // Steps of the phase until the next state; of an unloading to a stress the steps at which the
   // deformation would have been taken back twice.
   long next_record_ = 0;
-  // Of the servos in the deformation: largest error, sum of squares, and how often measured.
+  // The servos' errors in the deformation: the largest, the sum of squares, and how often measured.
   double stress_error_ = 0, squared_errors_ = 0;
   std::int64_t measured_ = 0;
   std::vector<std::optional<Snapshot>> states_;

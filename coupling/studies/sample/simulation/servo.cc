@@ -18,7 +18,7 @@ constexpr double kForce2 = 2, kForce3 = 4;
 // without end); of superellipsoids prepared with little friction 0.7 * 8.7/pi = 1.9, and their
 // contacts are flatter, hence stiffer, than those of two spheres.
 constexpr double kBulkOfSuperellipsoids = 2.5;
-// Of the depth: by how much, and within how long, it is changed to see what the force answers.
+// The share by which the depth is changed to see what the force answers.
 constexpr double kNudge = 1e-3;
 
 struct ContactAnswer {
@@ -36,7 +36,7 @@ Outline regular(double radius, int corners) {
   return out;
 }
 
-// Of two mean grains pushed together until they push back with this force.
+// The answer of two mean grains pushed together until they push back with this force.
 ContactAnswer answer_of(const SamplePlan& plan, const EngineSettings& settings, double density,
                         double force) {
   const double r = sample_radii(plan).mean;
