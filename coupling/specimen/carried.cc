@@ -5,8 +5,12 @@
 
 #include "coupling/specimen/surface.h"
 
-namespace grainfield::dem {
+namespace grainfield::coupling {
 namespace {
+
+using dem::Contact;
+using dem::Grain;
+using dem::Snapshot;
 
 // Groups of grains that touch, by the grain that stands for each (union by halving paths).
 class Groups {
@@ -69,4 +73,4 @@ std::vector<std::size_t> grains_in_flight(const Snapshot& snapshot, double colum
   return out;
 }
 
-}  // namespace grainfield::dem
+}  // namespace grainfield::coupling

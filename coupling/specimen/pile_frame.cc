@@ -25,7 +25,7 @@ constexpr double kOnePiece = 0.8;  // of the area at least, in a heap
 constexpr double kLeastSlope = 5;  // degrees: flatter is a layer
 
 // Apex and feet from the columns themselves.
-void measure_small_heap(const dem::Surface& surface, PileFrame& frame) {
+void measure_small_heap(const Surface& surface, PileFrame& frame) {
   double sum = 0, left = kNan, right = kNan;
   int count = 0;
   for (std::size_t k = 0; k < surface.top.size(); ++k) {
@@ -46,7 +46,7 @@ void measure_small_heap(const dem::Surface& surface, PileFrame& frame) {
 
 // Share of the area below the surface in the largest run of columns without a gap of two, such as
 // a grain that has rolled off leaves.
-double largest_piece(const dem::Surface& surface) {
+double largest_piece(const Surface& surface) {
   double all = 0, piece = 0, largest = 0;
   int empty = 0;
   for (const double top : surface.top) {
@@ -106,7 +106,7 @@ dem::Snapshot on_floor_zero(dem::Snapshot pile, double floor) {
 
 // Takes out what is in flight and says so.
 std::string without_grains_in_flight(dem::Snapshot& pile, double diameter) {
-  const std::vector<std::size_t> flying = dem::grains_in_flight(pile, diameter);
+  const std::vector<std::size_t> flying = grains_in_flight(pile, diameter);
   if (flying.empty()) return "";
   const dem::Grain first = pile.grains[flying.front()];
   for (std::size_t k = flying.size(); k-- > 0;) {
@@ -120,7 +120,7 @@ std::string without_grains_in_flight(dem::Snapshot& pile, double diameter) {
 }
 
 double fraction_in(const dem::Snapshot& pile, const dem::Outline& window) {
-  return window.empty() ? kNan : dem::volume_fraction(pile, window);
+  return window.empty() ? kNan : volume_fraction(pile, window);
 }
 
 }  // namespace
@@ -179,8 +179,8 @@ PileFrame pile_frame(const dem::Snapshot& heap_as_it_is) {
   }
   frame.grain_density = mass / area;
   frame.weight = mass * frame.gravity;
-  const dem::Surface surface = dem::free_surface(pile, frame.diameter);
-  const dem::HeapShape heap = dem::measure_heap(surface);
+  const Surface surface = free_surface(pile, frame.diameter);
+  const HeapShape heap = measure_heap(surface);
   frame.height = heap.height;
   frame.repose_left_deg = heap.repose_left_deg;
   frame.repose_right_deg = heap.repose_right_deg;
@@ -190,7 +190,7 @@ PileFrame pile_frame(const dem::Snapshot& heap_as_it_is) {
   if (!(frame.half_left > 0 && frame.half_right > 0)) measure_small_heap(surface, frame);
   frame.middle_reach = reach_of_mass(pile, frame.apex_x, kMiddle);
   frame.largest_piece = largest_piece(surface);
-  const dem::HeapWindows windows = dem::windows_of(heap, frame.diameter);
+  const HeapWindows windows = windows_of(heap, frame.diameter);
   frame.volume_fraction = fraction_in(pile, windows.whole);
   if (std::isnan(frame.volume_fraction)) {
     double below = 0;

@@ -9,8 +9,13 @@
 
 #include "dem/snapshot/contact_changes.h"
 
-namespace grainfield::dem {
+namespace grainfield::coupling {
 namespace {
+
+using dem::Contact;
+using dem::Grain;
+using dem::Snapshot;
+using dem::Vec3;
 
 constexpr int kLevels = 10;
 constexpr double kLeastAbove = 0.05;  // of the weight
@@ -90,4 +95,4 @@ Relaxation measure_relaxation(const Snapshot& before, const Snapshot& after, dou
   return r;
 }
 
-}  // namespace grainfield::dem
+}  // namespace grainfield::coupling

@@ -2,12 +2,12 @@
 #pragma once
 #include "dem/snapshot/snapshot.h"
 
-namespace grainfield::dem {
+namespace grainfield::coupling {
 
 /// The vertical force that the grains below a level exert on those above it, over the weight of
 /// these, minus one. 0 where what is above is in balance. Grains belong to the side on which their
 /// centroid is; contacts between the two sides count. nan without a grain above.
-double weight_carried_error(const Snapshot& snapshot, double level);
+double weight_carried_error(const dem::Snapshot& snapshot, double level);
 
 struct Relaxation {
   double base_before = 0;    ///< base force over the weight of all grains
@@ -21,6 +21,7 @@ struct Relaxation {
 /// Levels: from the base up in steps of a tenth of the height of the highest grain that moves, as
 /// long as a twentieth of the weight is above. Throws std::invalid_argument when the two are not of
 /// the same grains, or none of them can move.
-Relaxation measure_relaxation(const Snapshot& before, const Snapshot& after, double diameter);
+Relaxation measure_relaxation(const dem::Snapshot& before, const dem::Snapshot& after,
+                              double diameter);
 
-}  // namespace grainfield::dem
+}  // namespace grainfield::coupling

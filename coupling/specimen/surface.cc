@@ -10,8 +10,12 @@
 #include "coupling/averaging/columns.h"
 #include "dem/grains/placed.h"
 
-namespace grainfield::dem {
+namespace grainfield::coupling {
 namespace {
+
+using dem::Grain;
+using dem::Outline;
+using dem::Snapshot;
 
 using boost::math::statistics::median;  // reorders what it is given
 
@@ -126,10 +130,10 @@ Surface free_surface(const Snapshot& snapshot, double column) {
   // Columns at whole multiples of their width, so that snapshots share them.
   const double first = std::floor(left / column), last = std::ceil(right / column);
   s.left = first * column;
-  s.top.assign(coupling::count_columns(snapshot, 0, s.left, (last + 0.5) * column, column), 0.0);
+  s.top.assign(count_columns(snapshot, 0, s.left, (last + 0.5) * column, column), 0.0);
   for (const Grain& g : snapshot.grains) {
     if (g.fixed) continue;
-    const Outline corners = placed_outline(g);
+    const Outline corners = dem::placed_outline(g);
     const auto from = static_cast<std::size_t>((g.position.x() - g.radius - s.left) / column);
     const auto to = static_cast<std::size_t>((g.position.x() + g.radius - s.left) / column);
     for (std::size_t k = from; k <= to && k < s.top.size(); ++k) {
@@ -195,4 +199,4 @@ Stretch plateau_of(const Surface& surface, const Stretch& last, double drop) {
           std::min(last.right, surface.left + static_cast<double>(end) * surface.column)};
 }
 
-}  // namespace grainfield::dem
+}  // namespace grainfield::coupling

@@ -4,7 +4,7 @@
 
 #include "dem/snapshot/snapshot.h"
 
-namespace grainfield::dem {
+namespace grainfield::coupling {
 
 /// Highest point of the grains in each of equal columns; 0 (the floor) where there is none.
 struct Surface {
@@ -17,7 +17,7 @@ struct Surface {
 
 /// The surface of the free grains of a snapshot: exactly the highest point that a grain, cut at
 /// the column's ends, has in that column. `column`: width, m, above 0.
-Surface free_surface(const Snapshot& snapshot, double column);
+Surface free_surface(const dem::Snapshot& snapshot, double column);
 
 /// A straight line y = at_zero + slope x fitted to a flank.
 struct FlankLine {
@@ -58,4 +58,4 @@ struct Stretch {
 /// Of length 0 when no column lies in `last`.
 Stretch plateau_of(const Surface& surface, const Stretch& last, double drop);
 
-}  // namespace grainfield::dem
+}  // namespace grainfield::coupling

@@ -8,8 +8,12 @@
 #include "dem/grains/placed.h"
 #include "dem/shapes/polygon.h"
 
-namespace grainfield::dem {
+namespace grainfield::coupling {
 namespace {
+
+using dem::Grain;
+using dem::Outline;
+using dem::Snapshot;
 
 constexpr int kDiskCorners = 64;
 // Diameters: distance of the windows below the flanks' lines, thickness of the flanks' windows,
@@ -75,11 +79,11 @@ double common_area(const Outline& a, const Outline& b) {
   for (std::size_t k = 0; k < b.size() && !rest.empty(); ++k) {
     clip(rest, b[k], b[(k + 1) % b.size()], scratch);
   }
-  return rest.size() < 3 ? 0 : area_of(rest);
+  return rest.size() < 3 ? 0 : dem::area_of(rest);
 }
 
 double volume_fraction(const Snapshot& snapshot, const Outline& window) {
-  const double area = window.size() < 3 ? 0 : area_of(window);
+  const double area = window.size() < 3 ? 0 : dem::area_of(window);
   if (!(area > 0)) throw std::invalid_argument("volume_fraction: the window has no area");
   double left = window[0][0], right = left, low = window[0][1], high = low;
   for (const auto& p : window) {
@@ -92,7 +96,7 @@ double volume_fraction(const Snapshot& snapshot, const Outline& window) {
   for (const Grain& g : snapshot.grains) {
     const double x = g.position.x(), y = g.position.y(), r = 1.01 * g.radius;
     if (g.fixed || x + r < left || x - r > right || y + r < low || y - r > high) continue;
-    sum += common_area(g.outline.empty() ? disk_outline(g) : placed_outline(g), window);
+    sum += common_area(g.outline.empty() ? disk_outline(g) : dem::placed_outline(g), window);
   }
   return sum / area;
 }
@@ -135,4 +139,4 @@ HeapWindows windows_of(const HeapShape& heap, double diameter) {
   return w;
 }
 
-}  // namespace grainfield::dem
+}  // namespace grainfield::coupling

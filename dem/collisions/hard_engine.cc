@@ -296,7 +296,7 @@ template <int D>
 void HardEngine<D>::happen(std::int32_t g) {
   const Plan& plan = plans_[g];
   if (plan.meets <= plan.alone) {
-    collide(g);
+    collide_with_partner(g);
   } else if (plan.what >= 0) {
     hit(g, plan.what);
   } else if (plan.what == kStopsSliding) {
@@ -330,7 +330,7 @@ void HardEngine<D>::note_collision(std::int32_t g, std::int32_t wall) {
 }
 
 template <int D>
-void HardEngine<D>::collide(std::int32_t g) {
+void HardEngine<D>::collide_with_partner(std::int32_t g) {
   const std::int32_t other = plans_[g].partner;
   fly(g);
   if (hot_[other].number != plans_[g].number) {

@@ -185,7 +185,7 @@ Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, Mode mo
   out.grain_step = out.seconds * drops / grain_steps;
   engine->step(2 * kSamples * steps);
   const dem::Snapshot end = engine->snapshot();
-  out.level = dem::measure_relaxation(end, end, d).levels_before;
+  out.level = grainfield::coupling::measure_relaxation(end, end, d).levels_before;
   return out;
 }
 

@@ -250,7 +250,7 @@ Figures figures_of(const Snapshot& s) {
     ends += c.j >= 0 && !s.grains[c.j].fixed;
   }
   out[kContacts] = ends / kGrains;
-  const HeapShape shape = measure_heap(free_surface(s, kColumn));
+  const coupling::HeapShape shape = coupling::measure_heap(coupling::free_surface(s, kColumn));
   out[kLeft] = shape.repose_left_deg;
   out[kRight] = shape.repose_right_deg;
   out[kHeight] = shape.height;

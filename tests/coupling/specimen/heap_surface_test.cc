@@ -8,8 +8,10 @@
 #include "coupling/specimen/volume_fraction.h"
 #include "dem/random/random.h"
 
-namespace grainfield::dem {
+namespace grainfield::coupling {
 namespace {
+
+using namespace dem;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
@@ -220,4 +222,4 @@ TEST(Plateau, IsWhereTheLastLayerStillStands) {
 }
 
 }  // namespace
-}  // namespace grainfield::dem
+}  // namespace grainfield::coupling

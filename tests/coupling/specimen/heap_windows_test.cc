@@ -8,8 +8,10 @@
 #include "dem/random/random.h"
 #include "dem/shapes/polygon.h"
 
-namespace grainfield::dem {
+namespace grainfield::coupling {
 namespace {
+
+using namespace dem;
 
 // Flanks of these angles that meet the floor at -left and right.
 HeapShape heap(double left_deg, double right_deg, double left, double right, double top_share) {
@@ -59,4 +61,4 @@ TEST(HeapWindows, AreFullWhereGrainsFillThem) {
 }
 
 }  // namespace
-}  // namespace grainfield::dem
+}  // namespace grainfield::coupling

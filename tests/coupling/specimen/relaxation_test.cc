@@ -8,8 +8,10 @@
 #include "coupling/studies/pile/simulation.h"
 #include "tests/coupling/pile_scene.h"
 
-namespace grainfield::dem {
+namespace grainfield::coupling {
 namespace {
+
+using namespace dem;
 
 // Grains of 1 kg one above the other on a floor, the lowest at 0.5 m; each carries what is above it
 // but for `hidden` of a weight that the grain `missing` does not hand on. g = 10.
@@ -98,4 +100,4 @@ TEST(Relaxation, OfAPileThatSlept) {
 }
 
 }  // namespace
-}  // namespace grainfield::dem
+}  // namespace grainfield::coupling
