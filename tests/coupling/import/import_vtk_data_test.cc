@@ -7,6 +7,7 @@
 #include "coupling/import/import.h"
 #include "coupling/import/step_names.h"
 #include "tests/coupling/program.h"
+#include "tests/refusal.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -54,12 +55,7 @@ dem::Snapshot read(const ImportOptions& options) {
 }
 
 std::string refusal(const ImportOptions& options) {
-  try {
-    read(options);
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "";
+  return refusal_of([&] { read(options); });
 }
 
 // The lowest grain is pressed down by 1 N, the highest is held up by 2 N.

@@ -13,6 +13,7 @@
 #include "dem/snapshot/contact_changes.h"
 #include "tests/coupling/pile_scene.h"
 #include "tests/dem/imbalance.h"
+#include "tests/refusal.h"
 
 namespace grainfield::dem {
 namespace {
@@ -232,12 +233,7 @@ TEST(SpaceLoad, ResumesToTheSameBitsOnAnyThreads) {
 }
 
 std::string refusal(const PointLoadSetup& s) {
-  try {
-    make_point_load_run(s, 1, 1);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { make_point_load_run(s, 1, 1); });
 }
 
 TEST(SpaceLoad, RefusesWhatCannotBe) {

@@ -9,6 +9,7 @@
 
 #include "dem/space/lever.h"
 #include "tests/dem/bits_scene.h"
+#include "tests/refusal.h"
 
 namespace grainfield::dem {
 namespace {
@@ -60,15 +61,6 @@ NewGrain grain_at(double x, double y, double radius = 0.01) {
 }
 
 AddedForce::Loads spring(const GrainsNow& grains, double k) { return {-k * grains.positions, {}}; }
-
-std::string refusal_of(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "accepted";
-}
 
 /// Of errors at time steps that fall by halves.
 void expect_second_order(const std::vector<double>& errors) {

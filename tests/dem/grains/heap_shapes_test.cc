@@ -8,6 +8,7 @@
 #include "dem/grains/grain_family.h"
 #include "dem/grains/packing.h"
 #include "dem/shapes/polygon.h"
+#include "tests/refusal.h"
 
 namespace grainfield::dem {
 namespace {
@@ -186,12 +187,7 @@ TEST(GrainFamily, SideBySideWithoutOverlapAndInside) {
 }
 
 std::string refusal(const ShapeSetup& s) {
-  try {
-    check_shape(s);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { check_shape(s); });
 }
 
 TEST(GrainFamily, RefusesWhatIsNoGrain) {

@@ -14,6 +14,7 @@
 #include "dem/hdf5/trial_read.h"
 #include "tests/damaged_files.h"
 #include "tests/dem/snapshot_scene.h"
+#include "tests/refusal.h"
 
 namespace grainfield::dem {
 namespace {
@@ -22,16 +23,6 @@ using grainfield::testing::bytes_of;
 using grainfield::testing::TestFolder;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-template <class Call>
-std::string refusal(Call call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "nothing is refused";
-}
 
 // Where these bytes stand in the file.
 std::size_t find(const std::string& file, const std::string& bytes) {
@@ -82,7 +73,7 @@ TEST(DamagedFile, TheChecksumOfADatasetIsNamed) {
   write_snapshot(file, "/loaded", s);
   const std::size_t at = find(file, as_bytes(s.grains[7].mass));
   spoil(file, at);
-  EXPECT_THAT(refusal([&] { read_snapshot(file, "/loaded"); }),
+  EXPECT_THAT(refusal_of([&] { read_snapshot(file, "/loaded"); }),
               StartsWith(file + ":/loaded/grains: dataset 'mass': its checksum does not fit: the "
                                 "file is damaged"));
   spoil(file, at);
@@ -94,7 +85,7 @@ TEST(DamagedFile, AHeaderIsRefused) {
   const std::string file = folder / "s.h5";
   write_snapshot(file, "/loaded", small_snapshot());
   spoil(file, find(file, "grainfield-snapshot-1"));
-  EXPECT_THAT(refusal([&] { list_snapshots(file); }),
+  EXPECT_THAT(refusal_of([&] { list_snapshots(file); }),
               HasSubstr("its checksum does not fit: the file is damaged"));
 }
 
@@ -112,7 +103,7 @@ TEST(DamagedFile, OtherDataInTheirPlaceAreNoticed) {
     ASSERT_GE(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, zeros.data()), 0);
   }
   const hdf5::Handle in = hdf5::open_for_reading(file);
-  EXPECT_THAT(refusal([&] { hdf5::read_doubles(in, "values", 1, file); }),
+  EXPECT_THAT(refusal_of([&] { hdf5::read_doubles(in, "values", 1, file); }),
               HasSubstr("dataset 'values': its checksum does not fit"));
 }
 
@@ -163,8 +154,9 @@ TEST(DamagedFile, LinksInCirclesAndDeepOnesEnd) {
   EXPECT_THAT(list_snapshots(file), ::testing::ElementsAre("/a/b/loaded"));
   // A soft link may be named; a link into another file leads nowhere.
   EXPECT_EQ(read_snapshot(file, "/a/b/soft/b/loaded").grains.size(), 20U);
-  EXPECT_THAT(refusal([&] { read_snapshot(file, "/dangling"); }), HasSubstr("no snapshot there"));
-  EXPECT_NE(refusal([&] { read_snapshot(file, "/elsewhere/far"); }), "nothing is refused");
+  EXPECT_THAT(refusal_of([&] { read_snapshot(file, "/dangling"); }),
+              HasSubstr("no snapshot there"));
+  EXPECT_NE(refusal_of([&] { read_snapshot(file, "/elsewhere/far"); }), "nothing is refused");
 }
 
 TEST(DamagedFile, NamesAreShownShortAndWithoutControlCharacters) {
@@ -177,7 +169,7 @@ TEST(DamagedFile, NamesAreShownShortAndWithoutControlCharacters) {
   }
   write_snapshot(file, "/" + std::string(60000, 'x'), small_snapshot());
   EXPECT_EQ(list_snapshots(file).size(), 2U);
-  const std::string said = refusal([&] { read_snapshot(file, "/missing"); });
+  const std::string said = refusal_of([&] { read_snapshot(file, "/missing"); });
   EXPECT_LT(said.size(), 500U);
   EXPECT_THAT(said, HasSubstr("/?[2Jclear"));
   EXPECT_EQ(said.find('\x1b'), std::string::npos);
@@ -206,24 +198,26 @@ TEST(DamagedFile, SizesAreLookedAtBeforeMemoryIsTaken) {
     hdf5::write_attribute(out, "word", "w");
   }
   const hdf5::Handle in = hdf5::open_for_reading(file);
-  EXPECT_THAT(refusal([&] { hdf5::read_doubles(in, "empty", 1, file); }),
+  EXPECT_THAT(refusal_of([&] { hdf5::read_doubles(in, "empty", 1, file); }),
               HasSubstr("dataset 'empty' is damaged or foreign: larger than its file"));
-  EXPECT_THAT(refusal([&] { hdf5::read_doubles(in, "words", 1, file); }), HasSubstr("not numbers"));
-  EXPECT_THAT(refusal([&] { hdf5::read_number_attribute(in, "five"); }),
+  EXPECT_THAT(refusal_of([&] { hdf5::read_doubles(in, "words", 1, file); }),
+              HasSubstr("not numbers"));
+  EXPECT_THAT(refusal_of([&] { hdf5::read_number_attribute(in, "five"); }),
               HasSubstr("attribute 'five' is not a number"));
-  EXPECT_THAT(refusal([&] { hdf5::read_integer_attribute(in, "half"); }),
+  EXPECT_THAT(refusal_of([&] { hdf5::read_integer_attribute(in, "half"); }),
               HasSubstr("attribute 'half' is 0.5; it must be a whole number"));
-  EXPECT_THAT(refusal([&] { hdf5::read_number_attribute(in, "word"); }),
+  EXPECT_THAT(refusal_of([&] { hdf5::read_number_attribute(in, "word"); }),
               StartsWith(file + ":/: attribute 'word' is not a number"));
-  EXPECT_THAT(refusal([&] { hdf5::read_text_attribute(in, "half"); }),
+  EXPECT_THAT(refusal_of([&] { hdf5::read_text_attribute(in, "half"); }),
               HasSubstr("attribute 'half' is not a text"));
 }
 
 TEST(DamagedFile, WhatIsNoFileOfDataIsRefused) {
   const TestFolder folder;
-  EXPECT_THAT(refusal([&] { list_snapshots("/dev/null"); }), HasSubstr("not a regular file"));
+  EXPECT_THAT(refusal_of([&] { list_snapshots("/dev/null"); }), HasSubstr("not a regular file"));
   std::ofstream(folder / "empty.h5");
-  EXPECT_THAT(refusal([&] { list_snapshots(folder / "empty.h5"); }), HasSubstr("not an HDF5 file"));
+  EXPECT_THAT(refusal_of([&] { list_snapshots(folder / "empty.h5"); }),
+              HasSubstr("not an HDF5 file"));
 }
 
 TEST(DamagedFile, AChildTellsHowItEnded) {
