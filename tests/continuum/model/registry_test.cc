@@ -10,8 +10,6 @@
 using namespace grainfield::continuum;
 using testing::HasSubstr;
 
-namespace {}  // namespace
-
 TEST(Registry, UnknownModelNamesTheNearest) {
   EXPECT_THAT(refusal("flamand", {}), HasSubstr("no model 'flamand'; did you mean 'flamant'?"));
 }

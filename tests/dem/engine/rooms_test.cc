@@ -36,8 +36,8 @@ const std::vector<Room>& rooms() {
       {"grains", {"shared", "space", "engine", "laws", "shapes", "random", "snapshot"}},
       {"pouring", {"engine", "grains"}},
       {"run",
-       {"engine", "grains", "checkpoint", "implicit", "laws", "motion", "quasistatic", "random",
-        "shapes", "shared", "snapshot", "space"}},
+       {"engine", "grains", "checkpoint", "hdf5", "implicit", "laws", "motion", "quasistatic",
+        "random", "shapes", "shared", "snapshot", "space"}},
   };
   return kRooms;
 }
