@@ -144,7 +144,7 @@ std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> part
   return all;
 }
 
-// Of the elastic solver, and with adaptive refinement.
+// Figures of the elastic solver, and with adaptive refinement.
 std::vector<Figure> solver_figures(std::vector<Figure> own, bool refined = true) {
   std::vector<Figure> all{
       {"unknowns", "-", "unknowns of the last mesh"},
@@ -169,7 +169,7 @@ std::vector<Figure> half_space_figures() {
                          {"patch_width", "m", "width of the loaded strip or square"}});
 }
 
-// Of heaps of Mohr-Coulomb material, in the plane and as cones.
+// Parameters of heaps of Mohr-Coulomb material, in the plane and as cones.
 std::vector<Parameter> heap_material(const char* source) {
   return {number("dilation_deg", "deg",
                  "dilation angle, at most phi_deg; equal to it: associated flow", source, 0, 0, 60),

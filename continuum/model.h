@@ -12,13 +12,9 @@
 #include <utility>
 #include <vector>
 
-namespace grainfield::continuum {
+#include "dem/shared/computation_failed.h"
 
-/// A computation that failed (not converged, no equilibrium); the message says what to change.
-class ComputationFailed : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+namespace grainfield::continuum {
 
 /// A parameter value that the model cannot take: names it, the value found and what is allowed.
 class BadParameter : public std::invalid_argument {

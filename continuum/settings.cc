@@ -8,7 +8,7 @@
 #include <numeric>
 #include <optional>
 
-#include "continuum/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::continuum {
 namespace {

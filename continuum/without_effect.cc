@@ -36,7 +36,7 @@ std::string orthotropic_layer(const std::string& parameter, const Settings& s) {
   return ratios_beside_moduli(parameter, s);
 }
 
-// Of a closed layer nu_xy counts on a rough base, which a run may fill in later: it is not refused.
+// A closed layer's nu_xy counts on a rough base, which a run may fill in later: it is not refused.
 std::string orthotropic_half_plane(const std::string& parameter, const Settings& s) {
   if (parameter == "nu_xy" && std::isnan(number_of(s, "E_x")))
     return "beside r and t; leave it out or set E_x, E_y and G";

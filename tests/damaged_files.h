@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "dem/hdf5/file.h"
 #include "dem/random/random.h"
-#include "dem/snapshot/hdf5_file.h"
 
 #ifdef __SANITIZE_ADDRESS__
 // The library keeps a little of every file that it gives up.

@@ -32,9 +32,10 @@ using Gauss = boost::math::quadrature::gauss<double, 30>;
 constexpr double kOnBase = 1e-9;
 constexpr double kDecay = 34, kPanelPhase = 6, kPanelWidth = 2;
 constexpr double kLeastRatio = -0.99;
-// Of the decay: up to here the singularity stays a depth away from all depths of the layer.
+// Oscillation over decay: up to here the singularity stays a depth away from all depths of the
+// layer.
 constexpr double kMostOscillation = 0.5;
-// Of the fast wave's decay: from here on the nodes of about_axis resolve the depths to round-off.
+// Share of the fast wave's decay: from here on about_axis's nodes resolve the depths to round-off.
 constexpr double kLeastSlow = 0.5;
 
 class TransverseLayer : public Model {

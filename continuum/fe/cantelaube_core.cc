@@ -277,7 +277,7 @@ class CantelaubeCore : public fe::SolvedModel<2> {
     }
     const Eigen::MatrixXd on_ray = solver_->stress_at(ray), on_base = solver_->stress_at(bottom),
                           on_axis = solver_->stress_at(axis_points);
-    // Of the stress along the core's boundary, the component that equilibrium leaves free.
+    // The component of the stress along the core's boundary that equilibrium leaves free.
     double jump = 0, error = 0, mobilised = 0, largest = 0;
     const double s = std::sin(beta_hat_), c = std::cos(beta_hat_);
     const auto along = [&](const Eigen::Vector3d& v) {

@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "continuum/model.h"
-#include "continuum/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::continuum::osl {
 namespace {

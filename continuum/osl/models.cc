@@ -241,7 +241,7 @@ Eigen::RowVector3d in_project_axes(const Task& task, const State& u, double x, d
 
 namespace {
 
-// Of finite elements and of marching.
+// Figures of finite elements and of marching.
 std::vector<Figure> osl_figures() {
   return {{"c1", "-", "dx/d(depth) of the characteristic to the right"},
           {"c2", "-", "dx/d(depth) of the characteristic to the left"},

@@ -22,7 +22,7 @@
 #include "coupling/store/atomic_file.h"
 #include "coupling/store/field_io.h"
 #include "coupling/store/output_folder.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -44,7 +44,7 @@ dem::Vec3 parse_vector(const std::string& text, const char* option) {
   dem::Vec3 v(0, 0, 0);
   bool good = parts.size() == 2 || parts.size() == 3;
   for (std::size_t k = 0; good && k < parts.size(); ++k) {
-    const std::optional<double> number = dem::parse_number(parts[k]);
+    const std::optional<double> number = parse_number(parts[k]);
     good = number && std::isfinite(*number);
     if (good) v[static_cast<Eigen::Index>(k)] = *number;
   }
@@ -53,7 +53,7 @@ dem::Vec3 parse_vector(const std::string& text, const char* option) {
 }
 
 long long parse_whole(const std::string& text, const std::string& option) {
-  const std::optional<long long> value = dem::parse_integer(text);
+  const std::optional<long long> value = parse_integer(text);
   if (value && *value >= 0) return *value;
   throw std::invalid_argument(
       fmt::format("{}: found \"{}\", expected a whole number from 0", option, text));

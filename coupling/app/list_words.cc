@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -37,7 +37,7 @@ bool may_be_file(const std::string& word) {
 }
 
 bool is_option(const std::string& word) {
-  return word.size() > 1 && word.front() == '-' && !dem::parse_number(word);
+  return word.size() > 1 && word.front() == '-' && !parse_number(word);
 }
 
 bool is_list(const CLI::Option& option) {

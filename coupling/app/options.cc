@@ -8,7 +8,7 @@
 #include "coupling/app/points_csv.h"
 #include "coupling/base/unit.h"
 #include "coupling/tasks/placement.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -22,7 +22,7 @@ std::string unit_complaint(const std::string& text, const OptionUnits& quantity)
 CLI::Validator in_si_units(const OptionUnits& quantity) {
   return CLI::Validator(
       [quantity](std::string& text) -> std::string {
-        if (text.find(' ') == std::string::npos && dem::parse_number(text)) return "";
+        if (text.find(' ') == std::string::npos && parse_number(text)) return "";
         const std::optional<double> value = parse_quantity(text, quantity.units);
         if (!value) return unit_complaint(text, quantity);
         text = fmt::format("{}", *value);
@@ -68,7 +68,7 @@ namespace {
 constexpr int kMostThreads = 1024;
 
 std::string complaint(const std::string& text) {
-  const std::optional<long long> threads = dem::parse_integer(text);
+  const std::optional<long long> threads = parse_integer(text);
   const bool good = threads && *threads >= 1 && *threads <= kMostThreads;
   return good ? "" : fmt::format("found {}, allowed: 1 to {}", text, kMostThreads);
 }

@@ -25,7 +25,7 @@
 #include "coupling/base/read_input.h"
 #include "coupling/import/format.h"
 #include "coupling/result/csv.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -37,7 +37,7 @@ using Reader = io::CSVReader<dim, io::trim_chars<' ', '\t'>, io::no_quote_escape
                              io::throw_on_overflow, io::single_and_empty_line_comment<'#'>>;
 
 double number(const char* text, const char* column, const std::string& file, unsigned line) {
-  const std::optional<double> value = dem::parse_number(text);
+  const std::optional<double> value = parse_number(text);
   if (!value || !std::isfinite(*value)) {
     throw std::invalid_argument(
         fmt::format("{}:{}: column {}: found \"{}\", expected a number", file, line, column, text));

@@ -28,7 +28,7 @@ int complain(int code, const std::string& what) {
   return code;
 }
 
-// Of a command line that could not be read: the option that no command has; may be empty.
+// The option that no command has, of a command line that could not be read; may be empty.
 std::string unknown_option(const CLI::App& app) {
   for (const auto* chosen : app.get_subcommands()) {
     std::vector<std::string> names;

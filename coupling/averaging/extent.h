@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "dem/heap/reach.h"
+#include "dem/grains/reach.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {
@@ -29,10 +29,10 @@ inline double bottom_of(const dem::Grain& grain) {
 }
 /// The same in space, where up is z.
 inline double top_of(const dem::Grain& grain, int dim) {
-  return dim == 2 ? top_of(grain) : dem::top_in_space(grain);
+  return dim == 2 ? top_of(grain) : dem::top_3d(grain);
 }
 inline double bottom_of(const dem::Grain& grain, int dim) {
-  return dim == 2 ? bottom_of(grain) : dem::bottom_in_space(grain);
+  return dim == 2 ? bottom_of(grain) : dem::bottom_3d(grain);
 }
 /// The axis along which height is measured: y in the plane, z in space.
 inline int up_axis(int dim) { return dim - 1; }

@@ -7,9 +7,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "coupling/averaging/columns.h"
 #include "coupling/averaging/extent.h"
 #include "coupling/averaging/roof.h"
-#include "dem/heap/columns.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -18,7 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Mean over columns of the highest edge of a free grain whose centre is in the column.
 double mean_surface(const dem::Snapshot& snapshot, double left, double right, double column) {
-  const std::size_t columns = dem::count_columns(snapshot, 0, left, right, column);
+  const std::size_t columns = count_columns(snapshot, 0, left, right, column);
   std::vector<double> top(columns, -infinity);
   for (const dem::Grain& grain : snapshot.grains) {
     if (grain.fixed) continue;

@@ -33,7 +33,7 @@ class Lucy : public Kernel {
   }
 
  private:
-  // Of 1 - 6 r^2 + 8 r^3 - 3 r^4 with r^2 = d^2 + s^2, lengths in units of the range.
+  // The primitive of 1 - 6 r^2 + 8 r^3 - 3 r^4 with r^2 = d^2 + s^2, lengths in units of the range.
   static double primitive(double d, double s) {
     const double d2 = d * d, s2 = s * s, r2 = d2 + s2, r = std::sqrt(r2);
     // d^4 asinh(s/d) tends to 0 with d; below 1e-12 it is below rounding.

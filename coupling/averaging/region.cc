@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "coupling/averaging/clip.h"
+#include "coupling/averaging/columns.h"
 #include "coupling/averaging/extent.h"
 #include "coupling/averaging/layer.h"
-#include "dem/heap/columns.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -94,7 +94,7 @@ double square_in_box(double w, const Vector3d& low, const Vector3d& high, int di
   return product;
 }
 
-// Of two spheres whose centres are `distance` apart: two caps on either side of their common plane.
+// Two spheres whose centres are `distance` apart share two caps on either side of a common plane.
 double ball_in_ball(double distance, double r1, double r2) {
   const double small = std::min(r1, r2);
   if (distance >= r1 + r2) return 0;
@@ -162,7 +162,7 @@ void Region::find_roof(const dem::Snapshot& snapshot) {
 
 void Region::find_surface(const dem::Snapshot& snapshot) {
   const double column = 2 * mean_diameter(snapshot), width = right() - left();
-  const std::size_t columns = dem::count_columns(snapshot, 0, left(), right(), column);
+  const std::size_t columns = count_columns(snapshot, 0, left(), right(), column);
   std::vector<const dem::Grain*> top(columns, nullptr);
   for (const dem::Grain& grain : snapshot.grains) {
     if (grain.fixed) continue;

@@ -55,7 +55,7 @@ void turn_values(const Layout& layout, const std::vector<Group>& groups, const M
       if (group.rank == Rank::symmetric) tensor(b, a) = values[c];
       if (group.rank == Rank::antisymmetric) tensor(b, a) = -values[c];
     }
-    // Of a vector the first column holds its components.
+    // The first column holds a vector's components.
     tensor = group.rank == Rank::vector ? Matrix3d(turn * tensor)
                                         : Matrix3d(turn * tensor * turn.transpose());
     for (std::size_t c = group.first; c < group.last; ++c)
@@ -63,7 +63,7 @@ void turn_values(const Layout& layout, const std::vector<Group>& groups, const M
   }
 }
 
-// Of one ring.
+// The mean of one ring.
 struct Mean {
   std::vector<double> sum;
   std::vector<Index> count;

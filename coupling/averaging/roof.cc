@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "coupling/averaging/columns.h"
 #include "coupling/averaging/extent.h"
-#include "dem/heap/columns.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -36,7 +36,7 @@ Roof::Roof(const dem::Snapshot& snapshot, const Eigen::Vector3d& low, const Eige
   Index n[2];
   for (int a = 0; a < 2; ++a) {
     const double most = a == 0 ? 1e6 : kMostColumns / static_cast<double>(n[0]);
-    n[a] = static_cast<Index>(dem::count_columns(snapshot, a, low[a], high[a], column, most));
+    n[a] = static_cast<Index>(count_columns(snapshot, a, low[a], high[a], column, most));
     size_[a] = (high[a] - low[a]) / static_cast<double>(n[a]);
   }
   constexpr double none = -std::numeric_limits<double>::infinity();

@@ -8,7 +8,7 @@
 #include "continuum/model.h"
 #include "coupling/base/mistakes.h"
 #include "coupling/base/signals.h"
-#include "dem/computation_failed.h"
+#include "dem/shared/computation_failed.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::coupling {
@@ -40,9 +40,7 @@ Failure failure_of(const std::exception_ptr& error) {
     return {2, e.what(), e.lines()};
   } catch (const std::invalid_argument& e) {
     return {2, e.what()};
-  } catch (const dem::ComputationFailed& e) {
-    return {3, e.what()};
-  } catch (const continuum::ComputationFailed& e) {
+  } catch (const ComputationFailed& e) {
     return {3, e.what()};
   } catch (const dem::StorageFailed& e) {
     return {kExitStorage, e.what()};

@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "coupling/base/printable.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::coupling {
@@ -48,7 +48,7 @@ Holder read_holder(int descriptor) {
   Holder out;
   std::string process;
   if (in >> process >> out.host) std::getline(in >> std::ws, out.command);
-  out.process = dem::parse_integer(process).value_or(0);
+  out.process = parse_integer(process).value_or(0);
   return out;
 }
 

@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -23,11 +23,11 @@ double number_in(const fs::path& file) {
   std::ifstream in(file);
   std::string text;
   in >> text;
-  const double bytes = dem::parse_number(text).value_or(0);
+  const double bytes = parse_number(text).value_or(0);
   return bytes > 0 ? bytes : kUnlimited;
 }
 
-// Of this process's control group and all above it.
+// The least limit of this process's control group and all above it.
 double group_limit() {
   double least = number_in("/sys/fs/cgroup/memory/memory.limit_in_bytes");  // version 1
   std::ifstream groups("/proc/self/cgroup");

@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "coupling/base/printable.h"
+#include "dem/shared/refuse.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -24,10 +25,6 @@ constexpr int kPause = 20;         // ms
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-[[noreturn]] void refuse(const std::string& file, const std::string& why) {
-  throw std::invalid_argument(file + ": " + why);
 }
 
 const char* kind(mode_t mode) {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -131,16 +131,16 @@ std::optional<Unit> parse_unit(const std::string& text) {
 }
 
 std::optional<double> times_ten(const std::string& number, int ten) {
-  if (ten == 0) return dem::parse_number(number);
+  if (ten == 0) return parse_number(number);
   const std::size_t e = number.find_first_of("eE");
   if (e != std::string::npos) {
-    const auto more = dem::parse_integer(number.substr(e + 1));
+    const auto more = parse_integer(number.substr(e + 1));
     if (!more) return std::nullopt;
     // Beyond, a number is 0 or too large whatever its digits (a text has up to kMostCharacters).
     constexpr long long most = 100'000;
     ten += static_cast<int>(std::clamp(*more, -most, most));
   }
-  return dem::parse_number(fmt::format("{}e{}", number.substr(0, e), ten));
+  return parse_number(fmt::format("{}e{}", number.substr(0, e), ten));
 }
 
 std::optional<double> in_si(const std::string& number, const Unit& unit) {

@@ -14,7 +14,7 @@
 #include "coupling/case/study.h"
 #include "coupling/case/units.h"
 #include "dem/shapes/registry.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -63,7 +63,7 @@ void check_choice(const Key& key, const Assignment& a, const std::string& value,
   if (const std::string why = of_three_dimensions(key, value); !why.empty()) {
     reject(a, key.path(), fmt::format("found \"{}\", allowed: {}; {}", value, all, why));
   }
-  if (const std::string keys = numbers_of(key); !keys.empty() && dem::parse_number(value)) {
+  if (const std::string keys = numbers_of(key); !keys.empty() && parse_number(value)) {
     reject(a, key.path(),
            fmt::format("found \"{}\", allowed: {}; a number goes into {}", value, all, keys));
   }
@@ -84,7 +84,7 @@ void refuse_unknown_unit(const Key& key, const Assignment& a) {
     }
     std::string number = text->substr(0, behind);
     number.erase(number.find_last_not_of(' ') + 1);
-    if (number.size() == text->size() || !dem::parse_number(number)) continue;
+    if (number.size() == text->size() || !parse_number(number)) continue;
     reject(a, key.path(),
            fmt::format("found \"{}\", expected a number {}", *text,
                        key.unit == "-"

@@ -31,7 +31,7 @@ constexpr std::array kFalls{std::pair{"source.height", "shape.radius"},
                             std::pair{"cone.drop", "cone.radius"},
                             std::pair{"packing.drop_height", "packing.radius_max"}};
 
-// Of a key that means something here; nothing for others.
+// The value of a key that means something here; nothing for others.
 std::optional<double> value_of(const Draft& draft, const std::string& path) {
   const Key* key = find_key(path);
   if (key == nullptr || !key_applies(*key, draft.value.study)) return std::nullopt;

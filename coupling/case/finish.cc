@@ -249,7 +249,7 @@ void check_grains(const Draft& draft) {
   if (!study.has_grains()) return;
   check_points(draft);
   blame(draft, [&] { require_models(draft.value.models, dimension_of(draft.value)); });
-  // Of a sweep's many members each has a part of the draws.
+  // Each of a sweep's many members has a part of the draws.
   const std::int64_t draws =
       std::max(kLeastDraws, kMostDraws / static_cast<std::int64_t>(draft.members));
   dem::Outlook outlook;

@@ -81,7 +81,7 @@ Draft Members::of(const std::string& value) const {
   if (sweep_.key == kVariant) {
     const auto named = std::find_if(variants_.begin(), variants_.end(),
                                     [&](const Variant& v) { return v.name == value; });
-    // Of a name that is not there all others are told.
+    // All others are told where a name is not there.
     one.value.variants = named != variants_.end() ? std::vector<Variant>{*named} : variants_;
   }
   apply(one, parse_override(sweep_.key + "=" + value));

@@ -6,7 +6,7 @@
 
 #include "coupling/base/unit.h"
 #include "coupling/case/study.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -28,7 +28,7 @@ std::optional<Measure> parse_measure(const std::string& text) {
   if (blank == std::string::npos) return std::nullopt;
   const std::string number = text.substr(first, blank - first);
   const std::optional<Unit> unit = parse_unit(text.substr(blank));
-  if (!dem::parse_number(number) || !unit) return std::nullopt;
+  if (!parse_number(number) || !unit) return std::nullopt;
   std::optional<double> value = times_ten(number, unit->ten);
   if (!value) return std::nullopt;
   if (unit->radians) *value *= 180 / std::numbers::pi;

@@ -152,7 +152,7 @@ Eigen::MatrixXd forecast_of(const Comparison& c, std::size_t model, ErrorsFrom f
   return out;
 }
 
-// Of these places those where the models have values.
+// Those of the places where the models have values.
 std::vector<Place> common(const Comparison& c, const std::vector<std::size_t>& models,
                           const std::vector<Place>& places) {
   std::vector<Place> out;

@@ -69,7 +69,7 @@ struct NormalSums {
   }
   /// nan where the constants cannot be told apart.
   Eigen::Matrix<double, Constants, 1> solve() const {
-    // Of nine constants and more GCC 12 takes Eigen's estimate of the condition for uninitialized.
+    // GCC 12 takes Eigen's estimate of the condition of nine constants and more for uninitialized.
     constexpr int kSize = Constants < 9 ? Constants : Eigen::Dynamic;
     const Eigen::LDLT<Eigen::Matrix<double, kSize, kSize>> factors(matrix);
     Eigen::Matrix<double, Constants, 1> c = Eigen::Matrix<double, Constants, 1>::Constant(kNan);

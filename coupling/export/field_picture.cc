@@ -36,7 +36,7 @@ Lines lines_along(const Field& field, int axis) {
   const auto& points = field.points;
   const double extent = (points.colwise().maxCoeff() - points.colwise().minCoeff()).maxCoeff();
   const double step = extent > 0 ? kSame * extent : 1;
-  // Of each line the coordinates of its first point.
+  // The coordinates of each line's first point.
   std::map<std::vector<double>, std::vector<double>> shown;
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
     std::vector<double> rounded, others;
@@ -77,7 +77,7 @@ bool is_normal_stress(const std::string& name) {
   return name.size() == 8 && name.starts_with("sigma_") && name[6] == name[7];
 }
 
-// Of a label in which gnuplot takes _ for an index.
+// The name in a label, in which gnuplot takes _ for an index.
 std::string shown_name(std::string name) {
   if (name.size() == 8 && name.starts_with("sigma_")) return "σ_{" + name.substr(6) + "}";
   std::replace(name.begin(), name.end(), '_', ' ');

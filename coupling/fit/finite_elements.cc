@@ -8,7 +8,7 @@
 #include "coupling/compare/compare.h"
 #include "coupling/fit/fit_tables.h"
 #include "coupling/models/evaluate_model.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 
@@ -18,7 +18,7 @@ namespace {
 std::string constants_text(const continuum::Settings& settings) {
   std::vector<std::string> out;
   for (const auto& [key, value] : settings) {
-    const std::optional<double> number = dem::parse_number(value);
+    const std::optional<double> number = parse_number(value);
     out.push_back(fmt::format("{}={}", key, number ? fmt::format("{:.4g}", *number) : value));
   }
   return fmt::format("{}", fmt::join(out, ", "));
@@ -89,7 +89,7 @@ std::vector<FiniteElementFit> solve_elements(const std::vector<std::string>& nam
       const auto model = continuum::make_model(name, filled_settings(*choice, facts));
       const StressFunction stress = [&](const Eigen::MatrixXd& at) { return model->stress(at); };
       measure(data, weights, fit_of(fits, e.of), seen(stress, family_of(name) == "half plane"), e);
-    } catch (const continuum::ComputationFailed& failure) {
+    } catch (const ComputationFailed& failure) {
       e.why = failure.what();
     }
   }

@@ -80,7 +80,7 @@ struct Line {
   std::string name, label;
 };
 
-// Of heaps the best kDrawn. Models of one field (cantelaube_zero and bcc; cantelaube_continuous and
+// The best kDrawn of heaps. Models of one field (cantelaube_zero and bcc; cantelaube_continuous and
 // osl_yield, up to the search's tolerance) share one.
 std::vector<Line> lines_of(const EnsembleFits& fits) {
   std::vector<Line> out;

@@ -35,7 +35,7 @@ bool takes_weight(const continuum::ModelInfo& info) {
                      [](const continuum::Parameter& p) { return p.name == "rho_g"; });
 }
 
-// Of the plane, closed, and of this specimen.
+// Models of the plane, closed, and of this specimen.
 bool can_be_fitted(const continuum::ModelInfo& info, Of of) {
   if (info.dim == 3 || info.name.starts_with("fe_")) return false;
   return of == Of::layer ? is_of(info, Subject::load)

@@ -98,7 +98,7 @@ MatrixXd where_possible(const MatrixXd& points, Stress&& stress) {
   try {
     return stress();
   } catch (const continuum::BadParameter&) {
-  } catch (const continuum::ComputationFailed&) {
+  } catch (const ComputationFailed&) {
   }
   return no_stress(points);
 }

@@ -14,11 +14,11 @@
 #include <utility>
 
 #include "dem/shapes/polygon.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/cell_places.h"
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/images.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 
@@ -400,7 +400,7 @@ int Assembly::facet_of(std::int64_t wall, std::string_view text) const {
   if (w < tables) return 0;
   const std::vector<std::string>& ids = options_.walls[w - tables].ids;
   auto at = std::find(ids.begin(), ids.end(), text);
-  const std::optional<double> number = dem::parse_number(text);  // "3.0" is the wall 3, too
+  const std::optional<double> number = parse_number(text);  // "3.0" is the wall 3, too
   if (at == ids.end() && number) at = std::find(ids.begin(), ids.end(), fmt::format("{}", *number));
   return at == ids.end() ? 0 : 1 + static_cast<int>(at - ids.begin());
 }

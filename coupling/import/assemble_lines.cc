@@ -89,7 +89,7 @@ void Assembly::settle_lines(const ForeignTable& table, ContactColumns& c) {
     const auto names = [&](std::int64_t grain) {
       const std::int64_t id = out_.snapshot.grains[static_cast<std::size_t>(grain)].id;
       return std::any_of(std::begin(told), std::end(told), [&](const std::string& text) {
-        const auto number = dem::parse_number(text);
+        const auto number = parse_number(text);
         return number && *number == static_cast<double>(id);
       });
     };

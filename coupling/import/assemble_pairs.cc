@@ -32,7 +32,7 @@ constexpr double kAcrossNormal = 0.5;  // cosine of the angle to the wall's norm
 constexpr double kOffShape = 0.2;  // radii from a shape to a contact point, but for overlap
 constexpr double kWallGap = 0.01, kWallOverlap = 0.2;
 constexpr double kOffTwice = 0.05;  // of a distance, from twice the radii
-// Of the Coulomb limit: a contact this near to it slides.
+// Share of the Coulomb limit: a contact this near to it slides.
 constexpr double kSliding = 1e-6;
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -41,7 +41,7 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - share * way).norm();
 }
 
-// Of a point in the plane from the edges of a grain's outline.
+// The distance of a point in the plane from the edges of a grain's outline.
 double distance_to_outline(const dem::Grain& g, const Vec3& point) {
   const double cosine = std::cos(g.angle), sine = std::sin(g.angle);
   const auto corner = [&](std::size_t k) -> Vec3 {

@@ -10,7 +10,7 @@
 #include "coupling/import/assemble_contacts.h"
 #include "coupling/import/synonyms.h"
 #include "coupling/import/untaken.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -55,7 +55,7 @@ std::vector<std::string> names_behind(const std::string& name,
                                       const std::vector<std::string>& names, int count) {
   const std::size_t open = name.rfind('[');
   if (open == std::string::npos || name.back() != ']') return {};
-  const auto number = dem::parse_integer(name.substr(open + 1, name.size() - open - 2));
+  const auto number = parse_integer(name.substr(open + 1, name.size() - open - 2));
   if (!number) return {};
   std::vector<std::string> out;
   for (long long k = *number + 1; k <= *number + count; ++k) {
@@ -132,7 +132,7 @@ void Assembly::VectorBeside::add(const ForeignRow& row, const Vec3& force) {
   Vec3 vector = Vec3::Zero();
   for (std::size_t k = 0; k < columns.size(); ++k)
     vector[static_cast<Eigen::Index>(k)] =
-        dem::parse_number(std::string(row.text(columns[k]))).value_or(0);
+        parse_number(std::string(row.text(columns[k]))).value_or(0);
   const double length = vector.norm();
   if (!(length > 0) || force.isZero(0)) return;
   ++rows;

@@ -12,8 +12,8 @@
 #include "coupling/import/assemble.h"
 #include "coupling/import/outline_text.h"
 #include "coupling/import/synonyms.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -118,7 +118,7 @@ void Assembly::check_states(const ForeignTable& table, const TableColumns& colum
         out_.warnings.push_back(fmt::format("{}: {} is {}, in {} it is {}: are they of one state?",
                                             table.file, name, value, other.file, other.value));
     states_.push_back({table.file, name, value});
-    const std::optional<double> seconds = dem::parse_number(value);
+    const std::optional<double> seconds = parse_number(value);
     const Unit unit = column.unit.value_or(*parse_unit("s"));
     if (time && plain != "t" && seconds && std::isfinite(*seconds) &&
         unit.kind == parse_unit("s")->kind && out_.snapshot.time == 0)

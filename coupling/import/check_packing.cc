@@ -12,7 +12,7 @@ namespace {
 constexpr double kOddNormal = 0.5;  // cosine of the angle to the line of centres
 constexpr double kOffWall = 2;
 constexpr double kPulling = 1e-3;  // of the mean force: a pull below it is rounding
-// Of the Coulomb limit and of the whole force: digits that files round away, and what moves slowly.
+// Shares of the Coulomb limit and the whole force: digits that files round away, and slow motion.
 constexpr double kBeyondFriction = 1e-3, kBeyondForce = 1e-6;
 
 void check_coulomb_limit(const dem::Contact& c, PackingCheck& check) {

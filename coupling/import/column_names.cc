@@ -8,7 +8,7 @@
 #include "continuum/model.h"
 #include "coupling/import/row_text.h"
 #include "coupling/import/table.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -21,8 +21,8 @@ std::vector<std::string> expanded(const std::string& list) {
     const std::size_t open = part.rfind('['), dots = part.rfind("..");
     std::optional<double> first, last;
     if (open != std::string_view::npos && dots != std::string_view::npos && part.back() == ']') {
-      first = dem::parse_number(part.substr(open + 1, dots - open - 1));
-      last = dem::parse_number(part.substr(dots + 2, part.size() - dots - 3));
+      first = parse_number(part.substr(open + 1, dots - open - 1));
+      last = parse_number(part.substr(dots + 2, part.size() - dots - 3));
     }
     // False for nan too.
     const bool good = first && last && 0 <= *first && *first <= *last && *last <= 1000;

@@ -74,7 +74,7 @@ Found search(const dem::Snapshot& s) {
     for (int b = -reach(1); b <= reach(1); ++b)
       for (int c = -reach(2); c <= reach(2); ++c) {
         const std::array<int, 3> image{a, b, c};
-        // Of an image and its opposite one is enough.
+        // One of an image and its opposite is enough.
         if (image < std::array<int, 3>{0, 0, 0}) continue;
         const bool home = image == std::array<int, 3>{0, 0, 0};
         const dem::PlainVector<D> shift = part_of<D>(dem::shift_to(s.cell, image));

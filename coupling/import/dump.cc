@@ -9,8 +9,8 @@
 
 #include "coupling/import/foreign_kind.h"
 #include "coupling/import/format.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -106,15 +106,15 @@ class DumpScan {
     std::string_view line;
     if (!next(line, what)) return false;
     line = trimmed(line);
-    std::optional<long long> number = dem::parse_integer(line);
+    std::optional<long long> number = parse_integer(line);
     if (!number) {  // "2000.0"
-      const std::optional<double> real = dem::parse_number(line);
+      const std::optional<double> real = parse_number(line);
       if (real && *real == std::floor(*real) && std::abs(*real) < 9e15)
         number = static_cast<long long>(*real);
     }
     if (!number || *number < 0)
       refuse(fmt::format("found \"{}\", expected {}, a whole number{}", line.substr(0, 60), what,
-                         dem::parse_number(line) && what == kStep
+                         parse_number(line) && what == kStep
                              ? "; a time in s stands behind a line \"ITEM: TIME\""
                              : ""));
     value = *number;
@@ -136,7 +136,7 @@ class DumpScan {
     if (name == "TIME") {
       if (!next(line, "the time")) return false;
       line = trimmed(line);
-      const std::optional<double> time = dem::parse_number(line);
+      const std::optional<double> time = parse_number(line);
       if (!time || !(*time >= 0 && *time <= dem::kMostNumber))
         refuse(fmt::format("found \"{}\", expected the time, a finite number from 0",
                            line.substr(0, 60)));
@@ -194,7 +194,7 @@ class DumpScan {
       const bool named = fields.size() == wanted + 2 && fields.back().ends_with("hi");
       bool good = fields.size() == wanted || named;
       for (std::size_t k = 0; good && k < wanted; ++k) {
-        const auto number = dem::parse_number(fields[k]);
+        const auto number = parse_number(fields[k]);
         good = number && std::isfinite(*number);
         if (good) row[k] = *number;
       }

@@ -14,10 +14,10 @@
 #include "coupling/import/ids_table.h"
 #include "coupling/import/step_names.h"
 #include "coupling/import/steps.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/check_snapshot.h"
 #include "dem/snapshot/images.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -69,7 +69,7 @@ ForeignTable table_of(const ArrayTable& table, TableKind kind) {
   return out;
 }
 
-// Of --units.
+// The units of --units.
 UnitSystem units_of(const std::string& text) {
   if (const auto units = parse_unit_system(text.empty() ? "m" : text)) return *units;
   throw std::invalid_argument(
@@ -123,7 +123,7 @@ void check_options(const ImportOptions& options) {
 }
 
 // A number without a unit; 0 needs none.
-bool is_bare(std::string_view length) { return dem::parse_number(length).value_or(0) != 0; }
+bool is_bare(std::string_view length) { return parse_number(length).value_or(0) != 0; }
 
 // Beside another unit of the files' lengths a bare one of an option is in doubt.
 void require_unit(bool bare, const std::string& option, const std::string& units) {
@@ -193,7 +193,7 @@ std::string list_of(const ImportOptions& options) {
                      options.files.size());
 }
 
-// Of a step, s. Warns where the file's own time is another than --time-step makes it.
+// The time of a step, s. Warns where the file's own time is another than --time-step makes it.
 double time_of(const ForeignTable& grains, const StepChoice& choice, const ImportOptions& options,
                std::vector<std::string>& warnings) {
   const double made = static_cast<double>(choice.step) * options.time_step;
@@ -340,7 +340,7 @@ void import_snapshots(const ImportOptions& options,
     }
     ImportedSnapshot done = assembly.finish();
     if (!options.ids_file.empty()) restore_ids(options.ids_file, done.snapshot);
-    // Of several states the latest is the loaded one: the others are what the load has changed.
+    // The latest of several states is the loaded one: the others are what the load has changed.
     if (std::any_of(chosen.begin(), chosen.end(),
                     [&](const StepChoice& other) { return other.step > choice.step; })) {
       done.snapshot.applied_force.setZero();

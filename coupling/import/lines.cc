@@ -30,7 +30,7 @@ bool Lines::fill() {
   start_ += static_cast<std::streamoff>(at_);
   at_ = 0;
   const std::size_t old = buffer_.size();
-  // Of short lines one block is all that is kept.
+  // One block is all that is kept of short lines.
   const std::size_t more = old < kBlock / 2 ? kBlock - old : kBlock;
   buffer_.resize(old + more);
   const std::size_t count = source_.read(buffer_.data() + old, more);

@@ -26,8 +26,8 @@
 
 #include "coupling/import/foreign_kind.h"
 #include "coupling/import/format.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -80,7 +80,7 @@ class MercuryScan {
     split(line, ' ', words);
     std::vector<double> out;
     for (const std::string_view word : words) {
-      const auto number = dem::parse_number(word);
+      const auto number = parse_number(word);
       if (!number || !(std::abs(*number) <= dem::kMostNumber)) refuse(line, wanted);
       out.push_back(*number);
     }

@@ -6,7 +6,7 @@
 #include <cctype>
 
 #include "coupling/import/row_text.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -56,7 +56,7 @@ bool is_decimal_comma(std::string_view value) {
   if (comma == std::string_view::npos) return false;
   std::string text(value);
   text[comma] = '.';
-  return dem::parse_number(text).has_value();
+  return parse_number(text).has_value();
 }
 
 NumberSigns number_signs(Lines& lines, const ForeignTable& table) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -32,10 +32,9 @@ std::string plain_exponent(std::string_view text) {
 }
 
 std::optional<double> foreign_number(std::string_view text) {
-  if (const auto number = dem::parse_number(text)) return number;
-  return text.find_first_of("dD") == std::string_view::npos
-             ? std::nullopt
-             : dem::parse_number(plain_exponent(text));
+  if (const auto number = parse_number(text)) return number;
+  return text.find_first_of("dD") == std::string_view::npos ? std::nullopt
+                                                            : parse_number(plain_exponent(text));
 }
 
 bool is_no_value(std::string_view value) {
@@ -62,7 +61,7 @@ std::string_view without_comment(std::string_view line, char separator) {
     const std::size_t before = line.rfind(separator, sign);
     const std::size_t start = before == std::string_view::npos ? 0 : before + 1;
     const std::string_view value = trimmed(line.substr(start, sign - start));
-    if (!value.empty() && !dem::parse_number(value)) return line;
+    if (!value.empty() && !parse_number(value)) return line;
   }
   return behind.find('"') == std::string_view::npos ? trimmed(line.substr(0, sign)) : line;
 }

@@ -32,7 +32,7 @@ class RowParts {
 /// Whether it stands for an empty cell of a spreadsheet, of R or pandas: NA, None, -, #N/A, #NV.
 bool is_no_value(std::string_view value);
 
-/// A number as files write it: dem::parse_number(), and Fortran's exponents, 1.5D-03.
+/// A number as files write it: parse_number(), and Fortran's exponents, 1.5D-03.
 std::optional<double> foreign_number(std::string_view text);
 /// "1.5D-03" -> "1.5E-03"; any other text as it is.
 std::string plain_exponent(std::string_view text);

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <stdexcept>
 
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -35,7 +35,7 @@ NameParts parts_of(const std::string& text) {
 }
 
 std::optional<long long> number_of(const std::string& digits) {
-  return digits.size() <= 18 ? dem::parse_integer(digits) : std::nullopt;
+  return digits.size() <= 18 ? parse_integer(digits) : std::nullopt;
 }
 
 // Files whose names differ in their numbers only.

@@ -164,7 +164,7 @@ void StepList::settle(bool by_time, const ReadKeys& read_keys) {
                                                   : tables.grains;
     list.push_back(std::move(table));
   }
-  // Of one file, of which nothing is whole.
+  // One file, of which nothing is whole:
   if (steps_.empty()) throw std::invalid_argument(broken_);
   if (!stepped_) return;
   if (stepless && zero && steps_.size() > 1) {

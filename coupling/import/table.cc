@@ -11,7 +11,7 @@
 #include "continuum/model.h"
 #include "coupling/import/row_text.h"
 #include "coupling/import/synonyms.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -250,7 +250,7 @@ std::vector<std::string> TableColumns::misspelled() const {
 std::optional<double> TableColumns::constant_of(const std::string& ours,
                                                 const std::string& text) const {
   const OurColumn* known = our_column(ours);
-  if (const auto number = dem::parse_number(text)) {
+  if (const auto number = parse_number(text)) {
     const bool scaled = known != nullptr && !table_.units.is_si() &&
                         (known->unit == "m3" || table_.units.ten_of(known->unit) != 0);
     if (scaled && *number != 0)

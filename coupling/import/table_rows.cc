@@ -10,7 +10,7 @@
 #include "coupling/import/row_text.h"
 #include "coupling/import/synonyms.h"
 #include "coupling/import/table.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -147,8 +147,8 @@ ToldId ForeignRow::told_id(const ForeignColumn& column) const {
       column.constant ? fmt::format("{}", *column.constant) : plain_number(column);
   // A floating-point number in memory may be rounded, whatever its digits.
   const bool floating = array != nullptr && !array->numbers.empty();
-  if (const auto value = dem::parse_integer(told); value && !floating) return {*value, 0};
-  const std::optional<double> value = dem::parse_number(told);
+  if (const auto value = parse_integer(told); value && !floating) return {*value, 0};
+  const std::optional<double> value = parse_number(told);
   // Above, numbers of this type are no longer one apart.
   const bool single = array != nullptr && array->single;
   const double most = single ? 16777216.0 : 9007199254740992.0;

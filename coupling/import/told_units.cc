@@ -9,7 +9,7 @@
 
 #include "coupling/base/unit.h"
 #include "coupling/import/row_text.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -74,7 +74,7 @@ std::string foreign_unit_in(const std::string& line) {
     }
     if (word.back() == '.') word.pop_back();
     if (!number && is_foreign_unit(word)) return word;
-    number = dem::parse_number(word).has_value();
+    number = parse_number(word).has_value();
     word.clear();
   }
   return "";

@@ -10,7 +10,7 @@
 #include <regex>
 
 #include "coupling/import/synonyms.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -56,7 +56,7 @@ const std::vector<Meaning>& meanings_of_contacts() {
   return all;
 }
 
-// Of a size, which the components of a force tell, too.
+// The name of a size, which the components of a force tell, too.
 bool is_size_of_force(const std::string& plain) {
   static const std::regex sizes(
       "f|force|(f|force)(tot(al)?|abs|mag(nitude)?|norm|len(gth)?)|"
@@ -74,7 +74,7 @@ struct Component {
 std::optional<Component> component_of(const std::string& name) {
   const std::size_t open = name.rfind('[');
   if (open == std::string::npos || open == 0 || name.back() != ']') return std::nullopt;
-  const auto number = dem::parse_integer(name.substr(open + 1, name.size() - open - 2));
+  const auto number = parse_integer(name.substr(open + 1, name.size() - open - 2));
   if (!number || *number < 0 || *number > 1000) return std::nullopt;
   return Component{name.substr(0, open), static_cast<int>(*number)};
 }

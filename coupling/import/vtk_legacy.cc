@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "coupling/import/vtk_arrays.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -74,7 +74,7 @@ class LegacyReader {
   }
   std::size_t count() {
     const std::string_view found = word();
-    const auto value = dem::parse_integer(found);
+    const auto value = parse_integer(found);
     // As many bytes at least are to come.
     if (!value || *value < 0 || static_cast<std::size_t>(*value) > rest_.size())
       refuse(found, "a number of values that the file has");
@@ -101,12 +101,12 @@ class LegacyReader {
     }
     for (std::size_t k = 0; k < values; ++k) {
       const std::string_view found = word();
-      const auto number = dem::parse_number(found);
+      const auto number = parse_number(found);
       if (!number) refuse(found, fmt::format("number {} of {} of {}", k + 1, values, name));
       if (type.real) {
         out.numbers.push_back(*number);
       } else {
-        const auto whole = dem::parse_integer(found);
+        const auto whole = parse_integer(found);
         if (!whole) refuse(found, fmt::format("whole number {} of {} of {}", k + 1, values, name));
         out.whole.push_back(*whole);
       }
@@ -193,7 +193,7 @@ class LegacyReader {
       components = 1;
       std::string_view next = word();
       if (next != "LOOKUP_TABLE") {
-        components = static_cast<std::size_t>(dem::parse_integer(next).value_or(0));
+        components = static_cast<std::size_t>(parse_integer(next).value_or(0));
         require("LOOKUP_TABLE");
       }
       word();

@@ -17,7 +17,7 @@
 
 #include "coupling/import/lines.h"
 #include "coupling/import/vtk_arrays.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -189,8 +189,8 @@ class XmlReader {
       for (const std::string_view line : lines) {
         split(line, ' ', words);
         for (const std::string_view word : words) {
-          const auto number = dem::parse_number(word);
-          const auto whole = dem::parse_integer(word);
+          const auto number = parse_number(word);
+          const auto whole = parse_integer(word);
           if (!number || (!type.real && !whole))
             refuse(fmt::format("array {}: found \"{}\", expected numbers", out.name,
                                word.substr(0, 40)));

@@ -12,8 +12,8 @@
 
 #include "coupling/import/format.h"
 #include "coupling/import/synonyms.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -72,7 +72,7 @@ class XyzScan {
     std::string_view line;
     while (lines_.next(line)) {
       if (trimmed(line).empty()) continue;
-      const std::optional<long long> count = dem::parse_integer(trimmed(line));
+      const std::optional<long long> count = parse_integer(trimmed(line));
       if (!count || *count < 0) {
         if (found.empty()) return std::nullopt;
         refuse(fmt::format("found \"{}\", expected the number of grains of the next state",
@@ -111,7 +111,7 @@ class XyzScan {
     const long long header = lines_.line();
     std::vector<std::string_view> fields;
     split(comment, ' ', fields);
-    const auto is_number = [](std::string_view text) { return bool(dem::parse_number(text)); };
+    const auto is_number = [](std::string_view text) { return bool(parse_number(text)); };
     const auto known = std::count_if(fields.begin(), fields.end(), [](std::string_view name) {
       return is_known_name(std::string(name));
     });
@@ -136,10 +136,10 @@ class XyzScan {
     table_.time.reset();
     for (const char* name : {"timestep", "step", "frame"})
       if (const auto at = keys.find(name); at != keys.end() && !table_.step)
-        table_.step = dem::parse_integer(at->second);
+        table_.step = parse_integer(at->second);
     all_stepped_ = all_stepped_ && table_.step.has_value();
     if (const auto at = keys.find("time"); at != keys.end()) {
-      const auto time = dem::parse_number(at->second);
+      const auto time = parse_number(at->second);
       if (time && *time >= 0 && *time <= dem::kMostNumber) table_.time = *time;
     }
   }
@@ -152,7 +152,7 @@ class XyzScan {
     std::vector<std::string> out;
     bool good = parts.size() % 3 == 0 && !parts.empty();
     for (std::size_t k = 0; good && k < parts.size(); k += 3) {
-      const auto count = dem::parse_integer(parts[k + 2]);
+      const auto count = parse_integer(parts[k + 2]);
       good = count && *count >= 1 && *count <= 1000;
       for (long long c = 0; good && c < *count; ++c)
         out.push_back(name_of(std::string(parts[k]), c, *count));
@@ -185,7 +185,7 @@ class XyzScan {
       split(text, ' ', parts);
       std::vector<double> out;
       for (const std::string_view part : parts)
-        if (const auto number = dem::parse_number(part); number && std::isfinite(*number))
+        if (const auto number = parse_number(part); number && std::isfinite(*number))
           out.push_back(*number);
       if (parts.size() != count || out.size() != count)
         refuse(fmt::format("{}: found \"{}\", expected {} finite numbers", key, text, count));

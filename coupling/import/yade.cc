@@ -45,7 +45,7 @@ void put_attributes(std::vector<Comment>& comments) {
   }
 }
 
-// Of the comments with as many names as the row has values the one with the most known names.
+// The comment with the most known names among those with as many names as the row has values.
 const Comment* best_of(const std::vector<Comment>& comments, std::size_t count) {
   const Comment* best = nullptr;
   std::ptrdiff_t most = -1;

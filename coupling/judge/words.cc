@@ -18,7 +18,7 @@ constexpr double kMostMiss = 0.5;
 constexpr double kMostBeyond = 0.5;
 constexpr std::size_t kNamed = 3;  // models in a headline
 
-// Of a family; names of models keep their letters.
+// A family's name with a capital; names of models keep their letters.
 std::string capital(std::string text) {
   if (text.starts_with("the ")) {
     text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));

@@ -45,7 +45,7 @@ std::map<std::string, double> over_grains_height(std::map<std::string, double> f
                                                  double spanned);
 
 /// Stresses of one model on all point sets, with a single call of the model. Throws
-/// continuum::BadParameter and continuum::ComputationFailed.
+/// continuum::BadParameter and ComputationFailed.
 Evaluation evaluate_model(const ModelChoice& choice, const RunFacts& facts,
                           const std::vector<PointSet>& sets);
 

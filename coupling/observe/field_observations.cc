@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "coupling/heap/field_rows.h"
-#include "coupling/heap/heap_field.h"
 #include "coupling/observe/seen_models.h"
 #include "coupling/run/comparison_page.h"
+#include "coupling/specimen/field_rows.h"
+#include "coupling/specimen/heap_field.h"
 #include "dem/snapshot/limits.h"
 
 namespace grainfield::coupling {
@@ -129,20 +129,19 @@ FieldScene scene_of(Field field, const std::string& name, const LineOptions& opt
     out.told.force = loaded ? field_number(field, "F", where) : std::nan("");
     out.unit = loaded ? out.told.force / std::pow(out.told.height, dim - 1) : 1;
     if (field.word("frame") == "packing" && options.origin.empty()) {
-      refuse_field(
-          where,
-          "is in the packing's own axes, where models do not know their origin; give --origin "
-          "X,Y (heaps: the apex; layers: the load), or average with --frame heap or layer");
+      refuse(where,
+             "is in the packing's own axes, where models do not know their origin; give --origin "
+             "X,Y (heaps: the apex; layers: the load), or average with --frame heap or layer");
     }
   }
   if (!options.origin.empty()) {
     if (static_cast<int>(options.origin.size()) != dim)
-      refuse_field(where, fmt::format("--origin: found {} numbers, the field has {} coordinates",
-                                      options.origin.size(), dim));
+      refuse(where, fmt::format("--origin: found {} numbers, the field has {} coordinates",
+                                options.origin.size(), dim));
     for (const double number : options.origin) {
       if (!(std::abs(number) <= dem::kMostNumber))
-        refuse_field(where, fmt::format("--origin: found {}, allowed: {:g} m at most, either way",
-                                        number, dem::kMostNumber));
+        refuse(where, fmt::format("--origin: found {}, allowed: {:g} m at most, either way", number,
+                                  dem::kMostNumber));
     }
     field.points.rowwise() -= Eigen::Map<const Eigen::RowVectorXd>(options.origin.data(), dim);
   }
@@ -158,12 +157,12 @@ std::vector<ObservedLine> lines_of(const FieldScene& scene, const LineOptions& o
       options.components.empty() ? std::vector<std::string>{vertical(scene)} : options.components;
   for (const std::string& component : components) {
     if (scene.field.find(component) == nullptr) {
-      refuse_field(where, fmt::format("has no column \"{}\"", component));
+      refuse(where, fmt::format("has no column \"{}\"", component));
     }
   }
   if (scene.field.nx == 0 &&
       rows.size() * kLeastPoints > static_cast<std::size_t>(scene.field.points.rows())) {
-    refuse_field(where, "its points are neither horizontal lines nor a grid");
+    refuse(where, "its points are neither horizontal lines nor a grid");
   }
   std::vector<const FieldRow*> chosen;
   if (scene.field.nx == 0) {
@@ -182,9 +181,8 @@ std::vector<ObservedLine> lines_of(const FieldScene& scene, const LineOptions& o
     for (const double share : heights) {
       const FieldRow& row = nearest_row(rows, (share - 1) * h);
       if (options.heights.size() > 0 && std::fabs(row.y - (share - 1) * h) > kNearRow * h) {
-        refuse_field(where,
-                     fmt::format("has no row at height {:g} h; its rows go from {:.3g} to {:.3g}",
-                                 share, 1 + rows.front().y / h, 1 + rows.back().y / h));
+        refuse(where, fmt::format("has no row at height {:g} h; its rows go from {:.3g} to {:.3g}",
+                                  share, 1 + rows.front().y / h, 1 + rows.back().y / h));
       }
       chosen.push_back(&row);
     }
@@ -205,7 +203,7 @@ std::vector<ObservedLine> lines_of(const FieldScene& scene, const LineOptions& o
       out.push_back(std::move(line));
     }
   }
-  if (out.empty()) refuse_field(where, "has no line with three values or more");
+  if (out.empty()) refuse(where, "has no line with three values or more");
   return out;
 }
 

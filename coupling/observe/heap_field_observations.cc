@@ -6,10 +6,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "coupling/heap/field_rows.h"
-#include "coupling/heap/heap_field.h"
 #include "coupling/observe/field_observations.h"
 #include "coupling/observe/heap_rows.h"
+#include "coupling/specimen/field_rows.h"
+#include "coupling/specimen/heap_field.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -58,7 +58,7 @@ Observations observe_heap_field(const FitSetup& setup, const Field& whole,
                                 const std::string& where) {
   Field field = without_realizations(whole, setup.leave_out, where);
   if (field.points.cols() != 2) {
-    refuse_field(where, fmt::format("is 3D; fits of heaps need a 2D field; {}", kCompareCones));
+    refuse(where, fmt::format("is 3D; fits of heaps need a 2D field; {}", kCompareCones));
   }
   std::vector<std::string> missing;
   bool single = true;
@@ -70,8 +70,8 @@ Observations observe_heap_field(const FitSetup& setup, const Field& whole,
       single = single && column->samples.size() > 0;
   }
   if (!missing.empty()) {
-    refuse_field(where, fmt::format("has no column {}, which the fit needs (fit.components)",
-                                    fmt::join(missing, ", ")));
+    refuse(where, fmt::format("has no column {}, which the fit needs (fit.components)",
+                              fmt::join(missing, ", ")));
   }
   const auto count = static_cast<std::size_t>(single ? field.realizations : 1);
   require_compression(field, where);

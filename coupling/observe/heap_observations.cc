@@ -10,10 +10,10 @@
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/kernel.h"
-#include "coupling/heap/heap_field.h"
 #include "coupling/import/packing_warnings.h"
 #include "coupling/observe/heap_rows.h"
 #include "coupling/run/realization_file.h"
+#include "coupling/specimen/heap_field.h"
 #include "dem/snapshot/added_forces_mark.h"
 
 namespace grainfield::coupling {

@@ -275,7 +275,7 @@ void set_mean_heap(Observations& out) {
   out.scale = scale_of_heaps(height, pressure, scaled_alone(static_cast<int>(out.frames.size())));
 }
 
-// Of one field: values that have no error are left out, said with their places, unless none has
+// One field's values that have no error are left out, said with their places, unless none has
 // one. Whether errors are left, finite where `all` is. Rows: components x places.
 bool pair_with_errors(const FitSetup& setup, const Eigen::MatrixXd& places, Eigen::MatrixXd& all,
                       Eigen::MatrixXd& errors, Observations& out) {

@@ -13,12 +13,12 @@
 #include "coupling/base/field.h"
 #include "coupling/case/case.h"
 #include "coupling/compare/compare.h"
-#include "coupling/heap/pile_frame.h"
 #include "coupling/models/evaluate_model.h"
 #include "coupling/observe/data.h"
 #include "coupling/observe/heap_facts.h"
 #include "coupling/observe/setup.h"
 #include "coupling/observe/stress_maps.h"
+#include "coupling/specimen/pile_frame.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

@@ -53,7 +53,7 @@ void require_columns(const Eigen::MatrixXd& points, int columns, const std::stri
         fmt::format("points: found {} columns, allowed: {} ({})", points.cols(), columns, of));
 }
 
-// Of states before and under the load, as --response takes them.
+// Pairs of states before and under the load, as --response takes them.
 std::vector<coupling::SnapshotName> pairs_of(const std::vector<Source>& loaded,
                                              const std::vector<Source>& unloaded) {
   const auto after = names_of(loaded), before = names_of(unloaded);

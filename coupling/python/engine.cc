@@ -14,7 +14,7 @@
 #include "coupling/case/apply.h"
 #include "coupling/python/bindings.h"
 #include "coupling/python/own_forces.h"
-#include "dem/heap/grain_family.h"
+#include "dem/grains/grain_family.h"
 #include "dem/laws/material_defaults.h"
 #include "dem/laws/material_setup.h"
 #include "dem/motion/motion_setup.h"
@@ -55,7 +55,7 @@ dem::ShapeKind shape_of(const Snapshot& s) {
                                                               : dem::ShapeKind::sphere;
 }
 
-// Of the free grains; all polygons as light as the lightest for their size.
+// Extremes of the free grains; all polygons as light as the lightest for their size.
 dem::GrainExtremes extremes_of(const Snapshot& s, dem::ShapeKind shape) {
   if (shape == dem::ShapeKind::superellipsoid)
     throw std::invalid_argument(
@@ -78,7 +78,7 @@ dem::GrainExtremes extremes_of(const Snapshot& s, dem::ShapeKind shape) {
   return dem::extremes_of(shaped, least_density);
 }
 
-// Of the mean radius of the free grains.
+// A grain of the mean radius of the free grains.
 dem::RoundGrain mean_grain(const Snapshot& s) {
   double sum = 0, count = 0;
   for (const dem::Grain& g : s.grains) {
@@ -430,7 +430,7 @@ void add_engine(py::module_& module) {
                    fmt::format("{}", fmt::join(self.missing(), ", "));
              return Packing{std::make_shared<const Snapshot>(std::move(now))};
            })
-      .def("image", [](const Engine& self) { return py::bytes(self.state().image()); })
+      .def("image", [](const Engine& self) { return py::bytes(self.state().checkpoint()); })
       .def_property_readonly("dim", &Engine::dim)
       .def_property_readonly("time", [](const Engine& e) { return e.state().time(); })
       .def_property_readonly("steps", [](const Engine& e) { return e.state().steps(); })

@@ -29,7 +29,7 @@ bool has_band(const Series& s) {
   return s.error.size() == s.x.size() && s.error.array().isFinite().any();
 }
 
-// Of a series with a colour of its own.
+// The colour of a series that has its own.
 const char* own_colour(const Series& s) {
   return style::model[static_cast<std::size_t>(s.colour) % style::models];
 }

@@ -27,7 +27,7 @@ std::vector<std::size_t> extreme_contacts(const dem::Snapshot& snapshot, Extreme
   const double lowest = carrying > 0 ? least * sum / carrying : 0;
   const bool strongest = which == Extreme::strongest;
   const auto counts = [&](const dem::Contact& c) { return c.j >= 0 && c.normal_force > lowest; };
-  // Of each grain; 0 or infinity: it has no contact that counts.
+  // Each grain's bound; 0 or infinity: it has no contact that counts.
   std::vector<double> bound(snapshot.grains.size(),
                             strongest ? 0 : std::numeric_limits<double>::infinity());
   for (const dem::Contact& c : snapshot.contacts) {

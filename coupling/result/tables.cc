@@ -15,7 +15,7 @@
 #include "coupling/result/profile_columns.h"
 #include "coupling/result/text_table.h"
 #include "coupling/store/atomic_file.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -216,7 +216,7 @@ Summary read_summary(const std::string& file) {
     else if (value.is_null())
       summary[key] = kNan;
     else if (value == "nan" || value == "inf" || value == "-inf")  // files of version 0.9
-      summary[key] = dem::parse_number(value.get<std::string>()).value();
+      summary[key] = parse_number(value.get<std::string>()).value();
     else if (value.is_string())
       summary[key] = value.get<std::string>();
     else

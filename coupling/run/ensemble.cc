@@ -21,7 +21,7 @@
 #include "coupling/run/realization_file.h"
 #include "dem/cannot_read_now.h"
 #include "dem/run/run.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::coupling {
@@ -96,7 +96,8 @@ class Worker {
     }
   }
 
-  // Of this rank's tasks, `done_before` of which are none of `mine`, after so many seconds.
+  // Progress of this rank's tasks, `done_before` of which are none of `mine`, after so many
+  // seconds.
   EnsembleProgress progress(const std::vector<std::size_t>& mine, std::size_t done_before,
                             double seconds) {
     EnsembleProgress out;
@@ -367,7 +368,7 @@ double cpu_seconds(const std::string& file) {
   std::ifstream in(cpu_file(file));
   std::string seconds;
   in >> seconds;
-  return dem::parse_number(seconds).value_or(std::numeric_limits<double>::quiet_NaN());
+  return parse_number(seconds).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace grainfield::coupling

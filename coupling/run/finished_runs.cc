@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "dem/cannot_read_now.h"
-#include "dem/snapshot/hdf5_probe.h"
+#include "dem/hdf5/trial_read.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

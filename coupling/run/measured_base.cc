@@ -35,7 +35,7 @@ double attribute(const Field& field, const char* key, const std::string& file) {
 
 double largest(const Eigen::VectorXd& v) { return v.cwiseAbs().maxCoeff(); }
 
-// Of a curve through points with ascending x; nan beyond them.
+// The value of a curve through points with ascending x; nan beyond them.
 double interpolated(const Eigen::VectorXd& x, const Eigen::VectorXd& y, double at) {
   if (x.size() == 0 || at < x[0] - kBeyond || at > x[x.size() - 1] + kBeyond) {
     return std::numeric_limits<double>::quiet_NaN();

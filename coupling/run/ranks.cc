@@ -101,10 +101,8 @@ std::string described(const std::exception_ptr& error) {
     return std::string("i") + e.what();
   } catch (const std::invalid_argument& e) {
     return std::string("2") + e.what();
-  } catch (const dem::ComputationFailed& e) {
+  } catch (const ComputationFailed& e) {
     return std::string("d") + e.what();
-  } catch (const continuum::ComputationFailed& e) {
-    return std::string("c") + e.what();
   } catch (const dem::StorageFailed& e) {
     return std::string("s") + e.what();
   } catch (const std::system_error& e) {
@@ -122,9 +120,7 @@ std::string described(const std::exception_ptr& error) {
     case '2':
       throw std::invalid_argument(what);
     case 'd':
-      throw dem::ComputationFailed(what);
-    case 'c':
-      throw continuum::ComputationFailed(what);
+      throw ComputationFailed(what);
     case 's':
       throw dem::StorageFailed(what);
     default:

@@ -29,8 +29,8 @@ class Ranks {
 
 /// Waits until every rank is here with what became of its work, null for success. Where any failed,
 /// all throw what the first of them (by number) failed with; a failure counts before an
-/// interruption. Throws std::invalid_argument, dem::ComputationFailed,
-/// continuum::ComputationFailed, dem::StorageFailed, Interrupted or std::runtime_error.
+/// interruption. Throws std::invalid_argument, ComputationFailed,
+/// ComputationFailed, dem::StorageFailed, Interrupted or std::runtime_error.
 void throw_together(const Ranks& ranks, const std::exception_ptr& own);
 
 /// Ends MPI if Ranks started it; the program calls it once, at its end.

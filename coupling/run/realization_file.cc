@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "dem/snapshot/number.h"
-#include "dem/snapshot/replace_file.h"
+#include "dem/hdf5/replace_file.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -25,11 +25,11 @@ std::size_t strip(dem::Snapshot& snapshot, std::map<std::string, double>& figure
   auto& attributes = snapshot.attributes;
   for (auto at = attributes.begin(); at != attributes.end();) {
     if (at->first == kOrder) {
-      const auto number = dem::parse_integer(at->second);
+      const auto number = parse_integer(at->second);
       if (!number || *number < 0) refuse(at, "a whole number from 0");
       order = static_cast<std::size_t>(*number);
     } else if (at->first.compare(0, kFigure.size(), kFigure) == 0) {
-      const auto number = dem::parse_number(at->second);
+      const auto number = parse_number(at->second);
       if (!number) refuse(at, "a number");
       figures[at->first.substr(kFigure.size())] = *number;
     } else {

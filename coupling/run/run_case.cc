@@ -269,7 +269,7 @@ double simulate(const std::vector<SweepCase>& members, const Workplace& place, c
   return seconds_since(start);
 }
 
-// Of the member's realizations, in their order; none for a study of models alone.
+// Files of the member's realizations, in their order; none for a study of models alone.
 std::vector<std::string> realization_files(const SweepCase& member, const Workplace& place) {
   const Case& value = member.value;
   std::vector<std::string> files;
@@ -338,10 +338,8 @@ void analyse_all(const Case& value, const std::vector<SweepCase>& members, const
     });
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(e.what() + kept);
-  } catch (const continuum::ComputationFailed& e) {
-    throw continuum::ComputationFailed(e.what() + kept);
-  } catch (const dem::ComputationFailed& e) {
-    throw dem::ComputationFailed(e.what() + kept);
+  } catch (const ComputationFailed& e) {
+    throw ComputationFailed(e.what() + kept);
   } catch (const dem::StorageFailed& e) {
     throw dem::StorageFailed(e.what() + kept);
   } catch (const std::runtime_error& e) {
@@ -349,7 +347,7 @@ void analyse_all(const Case& value, const std::vector<SweepCase>& members, const
   }
 }
 
-// Of this process so far, MB; Linux counts in units of 1024 bytes.
+// The peak of this process so far, MB; Linux counts in units of 1024 bytes.
 double peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -14,7 +14,7 @@
 namespace grainfield::coupling {
 namespace {
 
-// Of the smaller radius; Roul's piles reach 0.04.
+// Share of the smaller radius; Roul's piles reach 0.04.
 constexpr double kDeepOverlap = 0.1;
 constexpr double kMostBetweenCheckpoints = 1e6;  // s; eleven days
 

@@ -64,7 +64,7 @@ void write_grains(const std::string& folder, const StudyResult& result) {
   }
 }
 
-// Of a study without a page of its own: its sentence and its figures.
+// The page of a study without one of its own: its sentence and its figures.
 Report plain_page(const StudyResult& result, const Realization*) {
   Report out;
   out.title = title_of(result.value);

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <utility>
 
-#include "dem/snapshot/replace_file.h"
+#include "dem/hdf5/replace_file.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::coupling {
@@ -42,7 +42,7 @@ fs::path behind_links(fs::path path, const std::string& given) {
   return path;
 }
 
-// Of this host, 16 bits.
+// A mark of this host, 16 bits.
 unsigned host_mark() {
   std::array<char, 256> name{};
   if (gethostname(name.data(), name.size() - 1) != 0) return 0;

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "coupling/store/field_io.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -33,7 +33,7 @@ std::optional<std::vector<double>> numbers_in(const std::string& text) {
   std::istringstream items(text);
   for (std::string item; std::getline(items, item, ',');) {
     const std::size_t first = std::min(item.find_first_not_of(' '), item.size());
-    const std::optional<double> number = dem::parse_number(item.substr(first));
+    const std::optional<double> number = parse_number(item.substr(first));
     if (!number) return std::nullopt;
     out.push_back(*number);
   }

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "coupling/base/field.h"
-#include "dem/snapshot/hdf5_file.h"
+#include "dem/hdf5/file.h"
 
 namespace grainfield::coupling {
 

@@ -15,7 +15,7 @@
 #include "coupling/base/version.h"
 #include "coupling/store/atomic_file.h"
 #include "coupling/store/field_attributes.h"
-#include "dem/snapshot/hdf5_file.h"
+#include "dem/hdf5/file.h"
 #include "dem/snapshot/limits.h"
 
 namespace grainfield::coupling {
@@ -66,7 +66,7 @@ void check(const NamedFields& fields) {
   }
 }
 
-// Of a file that others may have written.
+// The numbers of a file that others may have written.
 void check_numbers(const Field& field, const std::string& where) {
   const auto refuse = [&](const std::string& what, double value, const char* allowed) {
     throw std::invalid_argument(

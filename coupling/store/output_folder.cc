@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "coupling/store/atomic_file.h"
-#include "dem/snapshot/replace_file.h"
+#include "dem/hdf5/replace_file.h"
 #include "dem/storage_failed.h"
 
 namespace grainfield::coupling {

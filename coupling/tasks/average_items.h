@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/heap/pile_frame.h"
+#include "coupling/specimen/pile_frame.h"
 #include "coupling/tasks/average_task.h"
 
 namespace grainfield::coupling {

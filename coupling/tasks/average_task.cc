@@ -12,15 +12,15 @@
 #include "coupling/averaging/kernel.h"
 #include "coupling/averaging/layer.h"
 #include "coupling/averaging/rings.h"
-#include "coupling/heap/heap_field.h"
 #include "coupling/result/text_table.h"
+#include "coupling/specimen/heap_field.h"
 #include "coupling/tasks/average_items.h"
 #include "coupling/tasks/placement.h"
 
 namespace grainfield::coupling {
 namespace {
 
-// Of a grid where none is asked for, in the plane and in space.
+// Points of a grid where none is asked for, in the plane and in space.
 constexpr int kColumns = 81, kRows = 31, kSide = 31, kLayers = 21;
 
 // Where the rings' axis is, in the frame.

@@ -13,7 +13,6 @@
 
 #include "continuum/settings.h"
 #include "coupling/base/version.h"
-#include "coupling/heap/heap_field.h"
 #include "coupling/judge/words.h"
 #include "coupling/models/parse_choices.h"
 #include "coupling/models/subject.h"
@@ -23,6 +22,7 @@
 #include "coupling/run/comparison_page.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/specimen/heap_field.h"
 #include "coupling/store/added_forces.h"
 #include "coupling/store/field_io.h"
 #include "coupling/store/output_folder.h"

@@ -88,7 +88,7 @@ struct Chosen {
   std::string field_file, field;  // or one field
 };
 
-// Of what is in memory, if anything is.
+// The name of what is in memory, if anything is.
 std::string first_name(const FitRequest& request) {
   if (!request.inputs.empty()) return request.inputs.front();
   return request.heaps.empty() ? "field" : request.heaps.front().file;

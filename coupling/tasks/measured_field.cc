@@ -17,8 +17,8 @@
 #include "coupling/import/format.h"
 #include "coupling/import/synonyms.h"
 #include "coupling/tasks/measured_share.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -30,11 +30,11 @@ constexpr double kOutside = 1.1;
 constexpr double kImpossible = 5, kTooLight = 0.05;
 // Places that all lie within this share of the way to the nearer foot are in a wrong unit.
 constexpr double kNarrow = 0.03;
-// Of the height.
+// Share of the height.
 constexpr double kWidestCell = 0.25;
 constexpr std::size_t kEnoughToCarry = 5;
 constexpr Eigen::Index kLeastToFit = 10;
-// Of the values, in the median.
+// Shares of the values, in the median.
 constexpr double kLeastError = 1e-3, kMostError = 1;
 
 // Shears so many standard errors from 0 tell their sign; so many are enough, and so large a share
@@ -173,7 +173,7 @@ class Reader {
                : fmt::format("column {}: found the unit \"{}\", allowed: {}", name, heading->unit,
                              fmt::join(names, ", ")));
   }
-  // Of the heap or the response.
+  // The scale of the heap or the response.
   double scaled(const std::string& unit) const {
     const MeasuredRequest& r = request_;
     double out = kNan;

@@ -14,10 +14,10 @@ struct MeasuredRequest {
   /// 2: stresses in N/m, where 1 Pa counts as 1 N/m; 3: Pa; 0: as the file says (settle)
   int dim = 0;
   double height = std::numeric_limits<double>::quiet_NaN();  ///< h, m
-  // Of heaps.
+  // Heaps alone:
   double left_deg = std::numeric_limits<double>::quiet_NaN(), right_deg = left_deg;
   double rho_g = std::numeric_limits<double>::quiet_NaN();  ///< N/m3 (2D: N/m2)
-  // Of layers.
+  // Layers alone:
   double load = std::numeric_limits<double>::quiet_NaN();  ///< F, N; nan: at rest
   double width = 0;  ///< radius of the measuring cells, m; 0: a thousandth of h
 };

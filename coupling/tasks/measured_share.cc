@@ -9,7 +9,7 @@
 #include <map>
 #include <numbers>
 
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -52,7 +52,7 @@ struct Force {
   double value = 0, error = 0;
 };
 
-// Of pressures that are straight between the places: along x, N/m.
+// The force of pressures that are straight between the places: along x, N/m.
 Force along(const std::vector<LevelPressure>& level) {
   Force out;
   double variance = 0;
@@ -89,7 +89,7 @@ Force over_rings(const std::vector<LevelPressure>& level) {
 
 // "13870", for a command line.
 std::string four_digits(double value) {
-  return fmt::format("{}", dem::parse_number(fmt::format("{:.4g}", value)).value_or(value));
+  return fmt::format("{}", parse_number(fmt::format("{:.4g}", value)).value_or(value));
 }
 
 Force force_of(const std::vector<LevelPressure>& level, int dim) {

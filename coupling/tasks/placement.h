@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "coupling/heap/pile_frame.h"
+#include "coupling/specimen/pile_frame.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

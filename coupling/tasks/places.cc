@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "coupling/tasks/placement.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -29,7 +29,7 @@ GridSize parse_grid(const std::string& text) {
     const bool digits = part.find_first_not_of("0123456789") == std::string_view::npos;
     const long long most = std::numeric_limits<int>::max();
     number = digits && !part.empty()
-                 ? static_cast<int>(std::min(dem::parse_integer(part).value_or(most), most))
+                 ? static_cast<int>(std::min(parse_integer(part).value_or(most), most))
                  : 0;
     return number >= 2;
   };

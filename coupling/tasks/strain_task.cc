@@ -15,7 +15,7 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr double kWidth = 3;  // mean diameters: a circle of some thirty grains
-// Of a grid where none is asked for, in the plane and in space.
+// Points of a grid where none is asked for, in the plane and in space.
 constexpr int kStrainColumns = 81, kStrainRows = 31, kStrainSide = 21;
 
 }  // namespace

@@ -34,7 +34,7 @@ struct Lattice {
   }
 };
 
-// Of those with sites enough the one with the widest distance.
+// The lattice with the widest distance among those with sites enough.
 Lattice<2> lattice_for(std::int64_t grains, std::integral_constant<int, 2>) {
   Lattice<2> best;
   for (std::int64_t columns = 1; columns * columns <= 4 * grains; ++columns) {

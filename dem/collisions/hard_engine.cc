@@ -5,13 +5,13 @@
 #include <algorithm>
 
 #include "dem/collisions/sliding.h"
-#include "dem/computation_failed.h"
+#include "dem/shared/computation_failed.h"
 
 namespace grainfield::dem {
 namespace {
 
 constexpr long kEventsPerClock = 64;
-// Of one grain at one instant: more than a chain of grains needs that touch each other.
+// Collisions of one grain at one instant: more than a chain of grains needs that touch each other.
 constexpr std::int32_t kMostAtOnce = 1000;
 // Share of gravity along a wall that is round-off.
 constexpr double kLevel = 1e-12;
@@ -296,7 +296,7 @@ template <int D>
 void HardEngine<D>::happen(std::int32_t g) {
   const Plan& plan = plans_[g];
   if (plan.meets <= plan.alone) {
-    meet(g);
+    collide_with_partner(g);
   } else if (plan.what >= 0) {
     hit(g, plan.what);
   } else if (plan.what == kStopsSliding) {
@@ -330,7 +330,7 @@ void HardEngine<D>::note_collision(std::int32_t g, std::int32_t wall) {
 }
 
 template <int D>
-void HardEngine<D>::meet(std::int32_t g) {
+void HardEngine<D>::collide_with_partner(std::int32_t g) {
   const std::int32_t other = plans_[g].partner;
   fly(g);
   if (hot_[other].number != plans_[g].number) {

@@ -134,7 +134,7 @@ class HardEngine {
   bool is_recent(std::int32_t g) const;
 
   void happen(std::int32_t g);
-  void meet(std::int32_t g);
+  void collide_with_partner(std::int32_t g);
   void hit(std::int32_t g, std::int32_t wall);
   void lie_down(std::int32_t g, std::int32_t wall, double up);
   void stop_sliding(std::int32_t g);

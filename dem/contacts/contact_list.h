@@ -38,7 +38,7 @@ struct ContactList {
   std::vector<ForceSum<D>> felt;  ///< by sleepers, by pair, since the last search
   /// Of the walls' contacts in the step before, towards the grain; 0: none, or a plane at rest.
   std::vector<VectorOf<D>> wall_normals;
-  Blocks blocks;  ///< not in the image: divide() makes them
+  Blocks blocks;  ///< not in a checkpoint: divide() makes them
 
   void clear() {
     pairs.clear();
@@ -104,7 +104,7 @@ struct ContactList {
     each(self.felt);
     each(self.wall_normals);
   }
-  /// That a broken image has not made nonsense of it. `searched`: rows of that many grains.
+  /// That a broken checkpoint has not made nonsense of it. `searched`: rows of that many grains.
   bool fits(bool searched, int rows, int grains, int wall_count) const {
     const auto within = [](int count) {
       return [count](const Pair& p) { return p.j >= 0 && p.j < count; };

@@ -39,13 +39,13 @@ class Rows {
   }
   std::size_t with_idle() const { return pairs_.size(); }
 
-  /// each(value) for all that an image holds.
+  /// each(value) for all that a checkpoint holds.
   template <class Self, class Each>
   static void visit(Self& self, Each each) {
     each(self.pairs_);
     each(self.start_);
   }
-  /// That this is `rows` rows with `idle` pairs behind them: a broken image may say anything.
+  /// That this is `rows` rows with `idle` pairs behind them: a broken checkpoint may say anything.
   bool fits(int rows, int idle) const {
     return start_.size() == static_cast<std::size_t>(rows) + 1 && start_.front() == 0 &&
            std::is_sorted(start_.begin(), start_.end()) &&

@@ -72,8 +72,8 @@ class TakesAddedForces {
   /// When Engine::step() throws what the function has thrown, its last step is whole: made with
   /// what the function returned before. Contact forces, walls' forces and stresses of the engine
   /// and its snapshots contain what acts in contacts. Snapshots have the attribute "added_forces".
-  /// Images hold what acts now: restore() needs the same forces and throws std::invalid_argument
-  /// without them.
+  /// Checkpoints hold what acts now: restore() needs the same forces and throws
+  /// std::invalid_argument without them.
   virtual void add_force(std::shared_ptr<AddedForce> force) = 0;
   /// Throws std::invalid_argument when there is no such force.
   virtual void remove_force(const std::string& name) = 0;
@@ -95,7 +95,7 @@ void check_loads(const AddedForce& force, const AddedForce::Loads& loads, Eigen:
 [[noreturn]] void refuse_flow_with_added_forces();
 /// "NAME every 3 steps"
 std::string every_text(const std::string& name, long every);
-/// Throws std::invalid_argument: an image needs these forces.
+/// Throws std::invalid_argument: a checkpoint needs these forces.
 [[noreturn]] void refuse_without_forces(const std::string& needed, const std::string& found);
 
 }  // namespace grainfield::dem

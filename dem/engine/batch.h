@@ -28,11 +28,12 @@ class PairBatches {
   using Overlap = typename World::Overlap;
   using Shape = typename World::Shape;
 
-  /// For a step of dt, s. `books`, `rolls`: there is an energy balance, resistance against rolling.
-  PairBatches(World& world, double dt, bool books, bool rolls, Act act)
+  /// For a step of dt, s. `balances`, `rolls`: there is an energy balance, resistance against
+  /// rolling.
+  PairBatches(World& world, double dt, bool balances, bool rolls, Act act)
       : world_(world),
         dt_(dt),
-        books_(books),
+        balances_(balances),
         rolls_(rolls),
         law_in_lanes_(takes_law()),
         act_(act) {}
@@ -68,7 +69,7 @@ class PairBatches {
       if (!batch_.touches[slot]) {
         apart(first_[slot], pair_[slot]);
       } else if (law_in_lanes_ && contacts_.left[slot] == 0) {
-        give(slot);
+        scatter(slot);
       } else {
         act_alone(first_[slot], pair_[slot], Shape::overlap_of(batch_, slot));
       }
@@ -80,7 +81,7 @@ class PairBatches {
   /// One rule for all pairs, and nothing that asks for a contact's own account.
   bool takes_law() const {
     if constexpr (LawInLanes<typename World::Law>) {
-      return dt_ > 0 && !books_ && !rolls_ && world_.acting.kinds() == 1 &&
+      return dt_ > 0 && !balances_ && !rolls_ && world_.acting.kinds() == 1 &&
              world_.acting.rule(0, 0).law.has_lanes();
     }
     return false;
@@ -105,7 +106,7 @@ class PairBatches {
       contacts_.contact_radius[slot] = memory.contact_radius;
     }
   }
-  void give(int slot) {
+  void scatter(int slot) {
     const auto vector = [slot](const double(&v)[3][kBatch]) {
       return typename World::Vector(v[0][slot], v[1][slot], v[2][slot]);
     };
@@ -128,12 +129,12 @@ class PairBatches {
     auto& contacts = world_.contacts;
     contacts.pairs[k].memory = {};
     if (!contacts.pair_forces[k].force.isZero(0)) contacts.pair_forces[k] = Force{};
-    if (dt_ > 0 && (books_ || rolls_)) [[unlikely]]
+    if (dt_ > 0 && (balances_ || rolls_)) [[unlikely]]
       account_apart(i, k);
   }
   [[gnu::noinline]] void account_apart(int i, int k) {
     if (rolls_) world_.rolling.pairs[k] = {};
-    if (books_) world_.balance.pairs[k].add({}, world_.grains.bodies[i], second(k), dt_);
+    if (balances_) world_.balance.pairs[k].add({}, world_.grains.bodies[i], second(k), dt_);
   }
   Body second(int k) const {
     const Body& b = world_.grains.bodies[world_.contacts.pairs[k].j];
@@ -142,7 +143,7 @@ class PairBatches {
 
   World& world_;
   const double dt_;
-  const bool books_, rolls_, law_in_lanes_;
+  const bool balances_, rolls_, law_in_lanes_;
   Act act_;
   typename Shape::Batch batch_;
   ContactBatch contacts_{};

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "dem/computation_failed.h"
+#include "dem/shared/computation_failed.h"
 
 namespace grainfield::dem {
 namespace {

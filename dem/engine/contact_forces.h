@@ -30,9 +30,9 @@ class ContactForces {
 
   explicit ContactForces(World& world)
       : world_(world),
-        books_(world.balance.on),
+        balances_(world.balance.on),
         rolls_(world.rolling.on),
-        aside_(books_ || rolls_) {}
+        out_of_line_(balances_ || rolls_) {}
 
   /// Some wall goes through a grain by more than half its radius a step.
   bool crossed() const { return crossed_.load(std::memory_order_relaxed); }
@@ -40,8 +40,8 @@ class ContactForces {
   /// Force of pair k between grain i and its second one; 0 and an empty memory when they do not
   /// touch.
   bool pair(int i, int k, double dt, Force& force) {
-    if (aside_) [[unlikely]] {
-      const Evaluated r = pair_aside(i, k, dt);
+    if (out_of_line_) [[unlikely]] {
+      const Evaluated r = pair_out_of_line(i, k, dt);
       force = r.force;
       return r.touches;
     }
@@ -69,7 +69,7 @@ class ContactForces {
     if (!world_.overlap(i, a, pair.j, b, image, pair.feature, o)) {
       pair.memory = {};
       if (rolls_ && dt > 0) world_.rolling.pairs[k] = {};
-      if (books_ && dt > 0) world_.balance.pairs[k].add({}, a, b, dt);
+      if (balances_ && dt > 0) world_.balance.pairs[k].add({}, a, b, dt);
       return false;
     }
     const auto& rule = world_.pair_rule(i, pair.j);
@@ -85,7 +85,7 @@ class ContactForces {
   [[gnu::noinline]] GRAINFIELD_FLATTEN void evaluate(int rank, double dt) {
     const auto& contacts = world_.contacts;
     const int last = contacts.blocks.last(rank);
-    PairBatches batch(world_, dt, books_, rolls_,
+    PairBatches batch(world_, dt, balances_, rolls_,
                       [&](const Rule& rule, const Body& a, const Body& b, const Overlap& o,
                           Memory& memory, int k) {
                         return acts(rule, a, b, o, dt, memory, world_.rolling.pairs,
@@ -124,7 +124,7 @@ class ContactForces {
     const auto& b = world_.grains.bodies[i];
     for (int k = contacts.walls.first(i); k < contacts.walls.last(i); ++k) {
       auto& pair = contacts.walls[k];
-      if (aside_ || !world_.walls.is_plain(pair.j)) [[unlikely]] {
+      if (out_of_line_ || !world_.walls.is_plain(pair.j)) [[unlikely]] {
         const Sum sum = other_wall(i, k, dt);
         force += sum.force;
         torque += sum.torque;
@@ -151,7 +151,7 @@ class ContactForces {
   };
   // With an energy balance or resistance against rolling the same is done out of line: nothing of
   // it is in the step loop, and nothing that the loop keeps in registers has an address there.
-  [[gnu::noinline]] Evaluated pair_aside(int i, int k, double dt) {
+  [[gnu::noinline]] Evaluated pair_out_of_line(int i, int k, double dt) {
     auto& pair = world_.contacts.pairs[k];
     const auto& grains = world_.grains;
     const auto &a = grains.bodies[i], &b = grains.bodies[pair.j];
@@ -163,7 +163,7 @@ class ContactForces {
     }
     pair.memory = {};
     if (rolls_ && dt > 0) world_.rolling.pairs[k] = {};
-    if (books_ && dt > 0) world_.balance.pairs[k].add({}, a, b, dt);
+    if (balances_ && dt > 0) world_.balance.pairs[k].add({}, a, b, dt);
     return {};
   }
   /// Force of contact k of a list, with resistance against rolling and its account.
@@ -177,7 +177,7 @@ class ContactForces {
       out.rolled = &rolling[k];
       out.moment = roll(rule, a, b, o, dt, rolling[k], out.force);
     }
-    if (!books_) return out;
+    if (!balances_) return out;
     out.after = memory;
     book<World::Acting::central>(accounts[k], rule, a, b, o, out, dt, [](Force&) {});
     return out;
@@ -230,7 +230,7 @@ class ContactForces {
                  if (std::fabs(body.velocity.dot(normal)) * dt > kMaxMoveShare * b.radius) {
                    crossed_.store(true, std::memory_order_relaxed);
                  }
-                 if (!books_) return;
+                 if (!balances_) return;
                  acted.after = memory;
                  book<World::Acting::central>(world_.balance.walls[k], rule, b, at_wall, o, acted,
                                               dt, about_centre);
@@ -243,15 +243,15 @@ class ContactForces {
       contacts.walls[k].memory = {};
       if (rolls_ && dt > 0) world_.rolling.walls[k] = {};
       contacts.wall_forces[k] = Force{};
-      if (books_ && dt > 0) world_.balance.walls[k].add({}, b, at_wall, dt);
+      if (balances_ && dt > 0) world_.balance.walls[k].add({}, b, at_wall, dt);
     }
     return sum;
   }
 
   World& world_;
-  const bool books_;  // there is an energy balance
-  const bool rolls_;  // there is resistance against rolling or twisting
-  const bool aside_;  // contacts are evaluated out of line for either
+  const bool balances_;     // there is an energy balance
+  const bool rolls_;        // there is resistance against rolling or twisting
+  const bool out_of_line_;  // contacts are evaluated out of line for either
   std::atomic<bool> crossed_{false};
 };
 

@@ -14,12 +14,12 @@
 #include <string>
 #include <vector>
 
-#include "dem/computation_failed.h"
 #include "dem/engine/contact_losses.h"
 #include "dem/laws/materials.h"
 #include "dem/motion/applied_force.h"
 #include "dem/motion/registry.h"
 #include "dem/shapes/registry.h"
+#include "dem/shared/computation_failed.h"
 #include "dem/sleep/sleep_settings.h"
 #include "dem/snapshot/cell_stress.h"
 #include "dem/snapshot/snapshot.h"
@@ -198,9 +198,9 @@ class Engine {
   virtual void remember(const std::vector<Contact>& contacts) = 0;
 
   /// The whole state, in bits, and back. restore() expects an engine made with the same settings
-  /// and without grains; throws std::invalid_argument when the image does not fit.
-  virtual std::string image() const = 0;
-  virtual void restore(const std::string& image) = 0;
+  /// and without grains; throws std::invalid_argument when the checkpoint does not fit.
+  virtual std::string checkpoint() const = 0;
+  virtual void restore(const std::string& checkpoint) = 0;
 };
 
 /// The largest time step that make_engine's user should take, s: the smaller of

@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "dem/computation_failed.h"
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/engine/add_forces.h"
+#include "dem/engine/added_checkpoint.h"
 #include "dem/engine/added_forces.h"
-#include "dem/engine/added_image.h"
 #include "dem/engine/cell_checks.h"
 #include "dem/engine/engine.h"
 #include "dem/engine/report.h"
@@ -27,10 +27,10 @@
 #include "dem/engine/turning.h"
 #include "dem/engine/wall_steps.h"
 #include "dem/engine/world.h"
-#include "dem/engine/world_image.h"
-#include "dem/image/image.h"
+#include "dem/engine/world_checkpoint.h"
 #include "dem/shapes/polygon.h"
 #include "dem/shapes/solid.h"
+#include "dem/shared/computation_failed.h"
 
 namespace grainfield::dem {
 
@@ -69,15 +69,15 @@ class EngineLoop final : public Engine, public TakesAddedForces {
     b.radius = solid.radius;
     Inertia<dim> inertia{g.density * solid.volume, g.density * solid.moments, solid.volume};
     if (g.mass > 0) inertia.mass = g.mass;
-    take_moments(g, inertia);
+    read_moments(g, inertia);
     if (!g.fixed) {
       b.velocity = in_space<dim>({g.vx, g.vy, g.vz});
       b.inverse_mass = 1 / inertia.mass;
-      if (g.rotates) take_turning(g, inertia, b);
+      if (g.rotates) read_spin(g, inertia, b);
       ++free_;
     }
     typename Integrator::Memory memory;
-    memory.rotation = rotation_told(g, inertia);
+    memory.rotation = read_rotation(g, inertia);
     grains.bodies.push_back(b);
     grains.memory.push_back(memory);
     grains.inertias.push_back(inertia);
@@ -236,14 +236,14 @@ class EngineLoop final : public Engine, public TakesAddedForces {
     team_.run([&](int rank) {
       sweep_.begin_block(rank);
       for (long s = 0; s < n; ++s) {
-        team_.meet();
+        team_.barrier();
         if (rank == 0) {
           if (s > 0) wall_steps_.feel();
           wall_steps_.advance(start + s);
         }
         if (flows) {
           if (rank == 0) world_.cell.advance();
-          team_.meet();
+          team_.barrier();
         }
         if (!between_steps(rank, start + s)) return;
         if (adds) [[unlikely]] {
@@ -262,7 +262,7 @@ class EngineLoop final : public Engine, public TakesAddedForces {
         } else {
           sweep_.template crossing<SweepKind::last>(rank, world_.time_step);
         }
-        team_.meet();
+        team_.barrier();
         if (rank == 0 && wall_steps_.leave_margins()) sweep_.ask_for_search();
         const auto applied =
             world_.around.applied_at(static_cast<double>(start + s + 1) * world_.time_step);
@@ -334,31 +334,31 @@ class EngineLoop final : public Engine, public TakesAddedForces {
       last_i = c.i;
       last_j = c.j;
       typename State::Memory memory;
-      take_spring(c, memory.spring);
+      read_spring(c, memory.spring);
       Report(world_).take_up(index[c.i], other, c.j < 0, memory);
       const bool turned = c.j >= 0 && c.j < c.i;
       frozen.memory = seen_from(memory, turned);
       world_.sleepers.frozen.keep(frozen);
       if (!world_.rolling.on) continue;
       RollingMemory<dim> rolling;
-      take_rolling(c, rolling);
+      read_rolling(c, rolling);
       if (!rolling.empty()) world_.rolling.told.push_back({frozen.key, seen_from(rolling, turned)});
     }
     world_.rolling.sort();
     world_.search_needed = true;
   }
 
-  std::string image() const override {
-    ImageWriter w;
+  std::string checkpoint() const override {
+    CheckpointWriter w;
     if (world_.added.on() || !world_.added.former.empty()) write_added(world_.added, w);
     w.put(free_);
     w.put(first_new_);
     write_world(world_, search_, w);
     return w.bytes();
   }
-  void restore(const std::string& image) override {
-    ImageReader r(image);
-    if (holds_added(image)) read_added(world_.added, r);
+  void restore(const std::string& checkpoint) override {
+    CheckpointReader r(checkpoint);
+    if (holds_added(checkpoint)) read_added(world_.added, r);
     r.get(free_);
     r.get(first_new_);
     read_world(world_, search_, r);
@@ -431,7 +431,7 @@ class EngineLoop final : public Engine, public TakesAddedForces {
         world_.around.applied_at(static_cast<double>(world_.steps) * world_.time_step);
     team_.run([&](int rank) {
       sweep_.template crossing<SweepKind::start>(rank, 0);
-      team_.meet();
+      team_.barrier();
       sweep_.template run<SweepKind::start>(rank, applied, 0, first_new_);
     });
     world_.contacts.pairs = pairs;

@@ -177,7 +177,7 @@ class Report {
   double kinetic_energy(int i) const {
     const auto& grains = world_.grains;
     return 0.5 * grains.inertias[i].mass * world_.fluctuation(i).squaredNorm() +
-           turning_energy(grains.bodies[i], world_.rotation(i), grains.inertias[i]);
+           rotational_energy(grains.bodies[i], world_.rotation(i), grains.inertias[i]);
   }
   /// Of all free grains, J, as Diagnostics has it.
   double potential_energy() const {
@@ -377,7 +377,7 @@ class Report {
     g.fixed = world_.grains.is_fixed(i);
     g.rotates = g.fixed || b.inverse_inertia != 0;
     g.material = world_.acting.material(world_.grains.kinds[i]);
-    tell_turning(b, world_.rotation(i), inertia, g);
+    write_rotation(b, world_.rotation(i), inertia, g);
     g.outline = world_.grains.shapes.outline(i);
     if constexpr (requires { world_.grains.shapes.superellipsoid(i); }) {
       g.axes = world_.grains.shapes.superellipsoid(i).axes;
@@ -418,9 +418,9 @@ class Report {
     c.tangential_force = signed_size_of(tangential_of(f.force, o));
     c.friction = rule(i, pair, wall).friction;
     c.sliding = is_sliding(of_law(f, i, pair, wall), o, c.friction);
-    tell_rolling(rolling, c);
+    write_rolling(rolling, c);
     const bool turned = !wall && c.j < c.i;
-    tell_spring(seen_from(pair.memory, turned).spring, c);
+    write_spring(seen_from(pair.memory, turned).spring, c);
     if (turned) {
       std::swap(c.i, c.j);
       c.normal = -c.normal;

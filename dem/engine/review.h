@@ -91,7 +91,7 @@ class Review {
         const int j = pairs[k].j;
         if (j < world_.awake) continue;
         sleepers.stir(j);
-        if (world_.contacts.felt[k].press == 0) continue;
+        if (world_.contacts.felt[k].force_sum == 0) continue;
         const double limit = sleep.wake_speed * std::sqrt(g * 2 * bodies[j].radius);
         if (speed > limit) any |= wake_up(j);
       }
@@ -355,7 +355,7 @@ class Review {
   static void add(Sum& sum, const ContactForce<dim>& on_it) {
     sum.force += on_it.force;
     sum.torque += on_it.torque_i;
-    sum.press += on_it.force.norm();
+    sum.force_sum += on_it.force.norm();
   }
 
   bool let_sleep() {
@@ -374,10 +374,10 @@ class Review {
       if (!marked_[i]) continue;
       auto& b = world_.grains.bodies[i];
       Sum& sum = sums_[i];
-      const bool touches = sum.press > 0;
+      const bool touches = sum.force_sum > 0;
       const typename World::Vector weight = world_.weight(i);
       sum.force += weight;
-      sum.press += weight.norm();
+      sum.force_sum += weight.norm();
       const double unbalanced = sum.force.norm() + size_of(sum.torque) / b.radius;
       const double energy = Report(world_).kinetic_energy(i);
       if (!(touches && unbalanced <= world_.sleepers.sleeping_share(i, world_.sleep) * sum.load() &&

@@ -71,10 +71,10 @@ class CarryRolling {
     auto& rolling = world_.rolling;
     if (!rolling.on) return;
     const auto& ids = world_.grains.ids;
-    give(world_.contacts.pairs, rolling.pairs, [&](int i, int j) {
+    fill(world_.contacts.pairs, rolling.pairs, [&](int i, int j) {
       return seen_from(recalled(pair_key(ids[i], ids[j])), ids[i] > ids[j]);
     });
-    give(world_.contacts.walls, rolling.walls,
+    fill(world_.contacts.walls, rolling.walls,
          [&](int i, int slot) { return recalled(wall_key(ids[i], slot)); });
     kept_.visit([&](PairKey key, const Memory& memory) {
       if (world_.sleepers.frozen.has(key)) rolling.told.push_back({key, memory});
@@ -96,7 +96,7 @@ class CarryRolling {
     }
   }
   template <class Rows, class Recall>
-  static void give(const Rows& rows, std::vector<Memory>& memories, Recall recall) {
+  static void fill(const Rows& rows, std::vector<Memory>& memories, Recall recall) {
     memories.assign(rows.with_idle(), {});
     for (int i = 0; i < rows.rows(); ++i) {
       for (int k = rows.first(i); k < rows.last(i); ++k) memories[k] = recall(i, rows[k].j);

@@ -16,7 +16,7 @@ namespace grainfield::dem {
 /// Spheres, and a law that tells its numbers for them side by side (laws/sphere_lanes.h).
 template <class Shape, class Law>
 concept SphereRowsInLanes = Shape::dim == 3 && Shape::rows_in_lanes&& requires(const Law& law) {
-  law.sphere_numbers(0.0, 0.0);
+  law.round_numbers(0.0, 0.0);
 };
 /// Disks likewise, with the linear law (laws/disk_lanes.h).
 template <class Shape, class Law>
@@ -55,7 +55,7 @@ class RowForces<World> {
       : rows_(sphere_rows_of(world, sums, world.rolling.on, go == RowForcesGo::to_list)) {
     const auto& rule = world.acting.rule(0, 0);
     const auto& r = rule.rolling;
-    numbers_ = rule.law.sphere_numbers(rule.friction, dt);
+    numbers_ = rule.law.round_numbers(rule.friction, dt);
     rolling_ = {r.stiffness,          r.damping,          r.friction,
                 r.twisting_stiffness, r.twisting_damping, r.twisting_friction};
   }
@@ -65,7 +65,7 @@ class RowForces<World> {
   }
 
  private:
-  SphereNumbers numbers_;
+  RoundNumbers numbers_;
   RollingNumbers rolling_;
   SphereRows rows_;
 };
@@ -77,7 +77,7 @@ class RowForces<World> {
   using Sum = ForceSum<World::dim>;
 
   RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt, RowForcesGo go)
-      : numbers_(world.acting.rule(0, 0).law.sphere_numbers(world.acting.rule(0, 0).friction, dt)),
+      : numbers_(world.acting.rule(0, 0).law.round_numbers(world.acting.rule(0, 0).friction, dt)),
         rows_(disk_rows_of(world, sums, go == RowForcesGo::to_list)) {}
 
   void evaluate(const PairsInOrder& order, int from, int to) {
@@ -85,7 +85,7 @@ class RowForces<World> {
   }
 
  private:
-  SphereNumbers numbers_;
+  RoundNumbers numbers_;
   DiskRows rows_;
 };
 

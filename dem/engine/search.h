@@ -79,8 +79,8 @@ class Search {
     prepare();
   }
 
-  /// Blocks of the threads and what else an image does not hold. Part of run(), or after a list has
-  /// come from an image.
+  /// Blocks of the threads and what else a checkpoint does not hold. Part of run(), or after a list
+  /// has come from a checkpoint.
   void prepare() {
     world_.contacts.divide(world_.awake, team_.size(), World::sleepers_first);
     if constexpr (dim == 3) {

@@ -51,7 +51,7 @@ class Sweep {
   explicit Sweep(World& world)
       : world_(world),
         motion_(world),
-        books_(world.balance.on),
+        balances_(world.balance.on),
         rolls_(world.rolling.on),
         contact_forces_(world),
         outer_forces_(world) {}
@@ -145,7 +145,7 @@ class Sweep {
 
   /// Rows are evaluated side by side in this run.
   bool sweeps_rows() const {
-    return !books_ && (dim == 3 || !rolls_) && world_.acting.kinds() == 1 && lane_width() > 2;
+    return !balances_ && (dim == 3 || !rolls_) && world_.acting.kinds() == 1 && lane_width() > 2;
   }
   /// crossing(), side by side but for pairs across a face.
   GRAINFIELD_FLATTEN void crossing_rows(int rank, double dt) {
@@ -336,7 +336,7 @@ class Sweep {
       force += damping.force;
       torque += damping.torque;
     }
-    if (books_ && (kind != SweepKind::start || grains.ids[i] >= first_new)) [[unlikely]] {
+    if (balances_ && (kind != SweepKind::start || grains.ids[i] >= first_new)) [[unlikely]] {
       outer_forces_.record(i, world_.is_loaded(i) ? applied : Vector(Vector::Zero()), damping, dt);
     }
     const Load<dim> load{force, torque, world_.around.gravity, world_.around.drag};
@@ -451,8 +451,8 @@ class Sweep {
 
   World& world_;
   GrainMotion<World> motion_;
-  const bool books_;  // there is an energy balance
-  const bool rolls_;  // there is resistance against rolling or twisting
+  const bool balances_;  // there is an energy balance
+  const bool rolls_;     // there is resistance against rolling or twisting
   ContactForces<World> contact_forces_;
   OuterForces<World> outer_forces_;
   std::vector<Sum> sums_;  // what earlier grains have left for a later one; 0 between steps

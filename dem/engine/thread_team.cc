@@ -95,9 +95,9 @@ void ThreadTeam::together(const std::function<void(int)>& part) {
   };
   if (works_) {
     part_ = &guarded;
-    meet();
+    barrier();
     guarded(0);
-    meet();
+    barrier();
   } else {
     run(guarded);
   }

@@ -24,21 +24,21 @@ class ThreadTeam {
   /// Calls work(rank) for rank 0..size-1 and returns when all have. work must not throw.
   void run(const std::function<void(int)>& work);
   /// Within work: waits for all. Free when there is one thread.
-  void meet() {
+  void barrier() {
     if (size_ > 1) wait_for_all(spins_);
   }
   /// Within work, by all of them: waits for all, then rank 0 does `task`, and the others only what
   /// it hands out by together(). Returns when it is done.
   template <class Task>
   void alone(int rank, Task task) {
-    meet();
+    barrier();
     if (rank != 0) return help(rank);
     task();
     part_ = nullptr;
-    meet();
+    barrier();
   }
   /// Within alone(), or outside of work: part(rank) on all threads; returns when all are done, and
-  /// throws what one of them has thrown. Parts that may throw must not meet.
+  /// throws what one of them has thrown. Parts that may throw must not call barrier().
   void together(const std::function<void(int)>& part);
 
  private:

@@ -164,7 +164,7 @@ struct World {
     if (awake == grains.size()) return;
     for (int k = 0; k < contacts.pairs.size(); ++k) {
       auto& felt = contacts.felt[k];
-      if (felt.press == 0) continue;
+      if (felt.force_sum == 0) continue;
       sleepers.touch(contacts.pairs[k].j, felt);
       felt = {};
     }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "dem/neighbours/hierarchical_grid.h"
+#include "dem/shared/refuse.h"
 
 namespace grainfield::dem {
 namespace {
@@ -15,11 +16,6 @@ namespace {
 // ones could leave to either side.
 constexpr double kNearest = 0.5;
 constexpr double kUnit = 1e-9;  // how far a normal's length may be from 1
-
-void require(bool holds, const std::string& key, double found, const char* allowed) {
-  if (holds) return;
-  throw std::invalid_argument(fmt::format("{}: found {:g}, allowed: {}", key, found, allowed));
-}
 
 bool not_below_zero(double x) { return x >= 0 && std::isfinite(x); }
 bool above_zero(double x) { return x > 0 && std::isfinite(x); }

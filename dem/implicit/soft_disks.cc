@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "dem/image/image.h"
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/implicit/soft_work.h"
 
 namespace grainfield::dem {
@@ -76,8 +76,8 @@ SoftRest SoftDisks::Work::rest() const {
   return out;
 }
 
-std::string SoftDisks::Work::image() const {
-  ImageWriter out;
+std::string SoftDisks::Work::checkpoint() const {
+  CheckpointWriter out;
   out.put(bodies_);
   out.put(angles_);
   out.put(acting_);
@@ -104,8 +104,8 @@ std::string SoftDisks::Work::image() const {
   return out.bytes();
 }
 
-void SoftDisks::Work::restore(const std::string& image) {
-  ImageReader in(image);
+void SoftDisks::Work::restore(const std::string& checkpoint) {
+  CheckpointReader in(checkpoint);
   const std::size_t n = bodies_.size();
   in.get(bodies_);
   in.get(angles_);
@@ -132,7 +132,7 @@ void SoftDisks::Work::restore(const std::string& image) {
   tally_.most_iterations = static_cast<int>(counts[4]);
   std::uint64_t found = 0;
   in.get(found);
-  in.require(found <= image.size());
+  in.require(found <= checkpoint.size());
   candidates_.assign(found, SoftCandidate());
   for (SoftCandidate& c : candidates_) {
     in.get(c.i);
@@ -169,7 +169,7 @@ const SoftLosses& SoftDisks::losses() const { return work_->losses(); }
 const ImplicitTally& SoftDisks::tally() const { return work_->tally(); }
 std::vector<SoftTouch> SoftDisks::touches() const { return work_->touches(); }
 SoftRest SoftDisks::rest() const { return work_->rest(); }
-std::string SoftDisks::image() const { return work_->image(); }
-void SoftDisks::restore(const std::string& image) { work_->restore(image); }
+std::string SoftDisks::checkpoint() const { return work_->checkpoint(); }
+void SoftDisks::restore(const std::string& checkpoint) { work_->restore(checkpoint); }
 
 }  // namespace grainfield::dem

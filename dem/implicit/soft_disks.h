@@ -136,9 +136,10 @@ class SoftDisks {
   SoftRest rest() const;
 
   /// The whole state, in bits, and back into one made of the same scene, settings and number of
-  /// disks: it goes on to the same bits. Throws std::invalid_argument when the image does not fit.
-  std::string image() const;
-  void restore(const std::string& image);
+  /// disks: it goes on to the same bits. Throws std::invalid_argument when the checkpoint does not
+  /// fit.
+  std::string checkpoint() const;
+  void restore(const std::string& checkpoint);
 
  private:
   class Work;

@@ -7,9 +7,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "dem/computation_failed.h"
 #include "dem/implicit/soft_checks.h"
 #include "dem/quasistatic/block_matrix.h"
+#include "dem/shared/computation_failed.h"
 
 namespace grainfield::dem {
 namespace {

@@ -37,8 +37,8 @@ class SoftDisks::Work {
   SoftEnergy energy() const;
   std::vector<SoftTouch> touches() const;
   SoftRest rest() const;
-  std::string image() const;
-  void restore(const std::string& image);
+  std::string checkpoint() const;
+  void restore(const std::string& checkpoint);
 
  private:
   using Vector = Eigen::VectorXd;

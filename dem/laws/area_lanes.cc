@@ -14,8 +14,8 @@ template <int W>
 }
 
 template <int W>
-[[gnu::always_inline]] inline void press(const AreaNumbers& law, const PlaneOverlapBatch& o, int at,
-                                         PlaneForceBatch& f) {
+[[gnu::always_inline]] inline void add_forces(const AreaNumbers& law, const PlaneOverlapBatch& o,
+                                              int at, PlaneForceBatch& f) {
   using V = Lanes<W>;
   const double *body_i[W], *body_j[W];
   const int left = o.count - at;
@@ -64,7 +64,7 @@ template <int W>
 template <int W>
 void area_forces_of(const AreaNumbers& law, const PlaneOverlapBatch& overlaps,
                     PlaneForceBatch& forces) {
-  for (int at = 0; at < overlaps.count; at += W) press<W>(law, overlaps, at, forces);
+  for (int at = 0; at < overlaps.count; at += W) add_forces<W>(law, overlaps, at, forces);
 }
 template void area_forces_of<GRAINFIELD_LANES>(const AreaNumbers& law,
                                                const PlaneOverlapBatch& overlaps,

@@ -9,7 +9,7 @@ namespace grainfield::dem {
 namespace {
 
 /// What is known of pairs by slot, before it goes to the memories and sums.
-struct alignas(64) Passed {
+struct alignas(64) PairLanes {
   double fx[kBatch], fy[kBatch], torque_i[kBatch], torque_j[kBatch], spring[kBatch];
   double *sum_i[kBatch], *sum_j[kBatch], *kept[kBatch];
   unsigned char* pair[kBatch];
@@ -24,8 +24,8 @@ template <int W>
 
 /// Lanes beyond the batch do later pairs' work, for nobody.
 template <int W>
-[[gnu::always_inline]] inline void press(const SphereNumbers& law, const DiskRows& rows,
-                                         const RowBatch& batch, int at, Passed& to) {
+[[gnu::always_inline]] inline void add_forces(const RoundNumbers& law, const DiskRows& rows,
+                                              const RowBatch& batch, int at, PairLanes& to) {
   using V = Lanes<W>;
   const V none{};
   const double *body_i[W], *body_j[W];
@@ -93,8 +93,8 @@ template <int W>
 
 /// To the memories, and to the sums or what is kept of pairs.
 template <int W>
-[[gnu::always_inline]] inline void give(const RowBatch& batch, int at, bool keeps,
-                                        const Passed& c) {
+[[gnu::always_inline]] inline void scatter(const RowBatch& batch, int at, bool keeps,
+                                           const PairLanes& c) {
   const int left = batch.count - at;
   const Lanes<W> fx = loaded<W>(c.fx + at), fy = loaded<W>(c.fy + at), none{};
   // A grain is the second of its pairs in earlier rows, then the first of those in its own: so all
@@ -119,13 +119,13 @@ template <int W>
 }  // namespace
 
 template <int W>
-void disk_forces_of(const SphereNumbers& law, const DiskRows& rows, const RowBatch& batch) {
+void disk_forces_of(const RoundNumbers& law, const DiskRows& rows, const RowBatch& batch) {
   static_assert(kPairsBehind >= kPairsAhead + W);
-  Passed passed;
-  for (int at = 0; at < batch.count; at += W) press<W>(law, rows, batch, at, passed);
-  for (int at = 0; at < batch.count; at += W) give<W>(batch, at, rows.kept != nullptr, passed);
+  PairLanes lanes;
+  for (int at = 0; at < batch.count; at += W) add_forces<W>(law, rows, batch, at, lanes);
+  for (int at = 0; at < batch.count; at += W) scatter<W>(batch, at, rows.kept != nullptr, lanes);
 }
-template void disk_forces_of<GRAINFIELD_LANES>(const SphereNumbers& law, const DiskRows& rows,
+template void disk_forces_of<GRAINFIELD_LANES>(const RoundNumbers& law, const DiskRows& rows,
                                                const RowBatch& batch);
 
 }  // namespace grainfield::dem

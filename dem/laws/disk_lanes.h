@@ -23,8 +23,8 @@ struct DiskRows {
 /// Their forces, added to the sums of both grains in the order of the pairs. The bits do not depend
 /// on W.
 template <int W>
-void disk_forces_of(const SphereNumbers& law, const DiskRows& rows, const RowBatch& batch);
-inline void disk_forces(const SphereNumbers& law, const DiskRows& rows, const RowBatch& batch) {
+void disk_forces_of(const RoundNumbers& law, const DiskRows& rows, const RowBatch& batch);
+inline void disk_forces(const RoundNumbers& law, const DiskRows& rows, const RowBatch& batch) {
   with_lanes([&](auto width) { disk_forces_of<width()>(law, rows, batch); });
 }
 

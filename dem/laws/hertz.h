@@ -112,7 +112,7 @@ struct HertzLaw {
 
   /// The same for spheres side by side.
   static constexpr SphereLawKind sphere_kind = SphereLawKind::hertz;
-  SphereNumbers sphere_numbers(double mu, double dt) const {
+  RoundNumbers round_numbers(double mu, double dt) const {
     const double twice = 2 * damping;
     return {sphere_kind,
             2 * effective_young(),

@@ -3,7 +3,7 @@
 // A law takes the overlap, the motion at the contact, a coefficient of friction, the time step and
 // what the contact remembers, and gives the forces; it advances the memory by the step (dt = 0: by
 // nothing). A law with forces of several contacts side by side also has lanes and has_lanes
-// (hertz_elliptic.h, engine/batch.h), or, for spheres and disks, sphere_numbers (sphere_lanes.h,
+// (hertz_elliptic.h, engine/batch.h), or, for spheres and disks, round_numbers (sphere_lanes.h,
 // disk_lanes.h), for polygons area_numbers (area_lanes.h). It knows
 // neither grains nor shapes: which measures of the overlap it reads it declares (overlap.h:
 // Measures), and a shape that does not offer them is not combined with it.

@@ -52,7 +52,7 @@ struct LinearLaw {
 
   /// The same for spheres side by side.
   static constexpr SphereLawKind sphere_kind = SphereLawKind::linear;
-  SphereNumbers sphere_numbers(double mu, double dt) const {
+  RoundNumbers round_numbers(double mu, double dt) const {
     return {sphere_kind,
             normal_stiffness,
             tangential_stiffness_,

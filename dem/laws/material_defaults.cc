@@ -16,7 +16,7 @@ namespace {
 constexpr double kSameRestitution = 5e-4;
 // A restitution that follows is for people: as written, it must not change when it is read again.
 constexpr double kShown = 1e9;
-// Of a dashpot that is far beyond critical: what a key still takes.
+// Restitution of a dashpot far beyond critical: what a key still takes.
 constexpr double kLeastRestitution = 1e-12;
 
 // A dashpot of a material: which member holds it, and by what it is multiplied to be the share of

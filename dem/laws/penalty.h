@@ -51,7 +51,7 @@ struct PenaltyLaw {
 
   /// The same for spheres side by side.
   static constexpr SphereLawKind sphere_kind = SphereLawKind::penalty;
-  SphereNumbers sphere_numbers(double mu, double dt) const {
+  RoundNumbers round_numbers(double mu, double dt) const {
     return {sphere_kind, normal_stiffness, tangential_stiffness_, 2 * damping, 0, false, false, mu,
             dt};
   }

@@ -30,7 +30,7 @@ template <int W>
 // sums, is a chain of operations that wait for each other, longer than a processor looks ahead.
 
 /// What a pass leaves for the next, by slot.
-struct alignas(64) Passed {
+struct alignas(64) PairLanes {
   double normal[3][kBatch], slip[3][kBatch];
   double approach[kBatch], depth[kBatch], inverse_mass[kBatch];
   double twist[kBatch];                     ///< rad, about the normal
@@ -101,7 +101,8 @@ template <SphereLawKind kind>
 template <int W>
 [[gnu::always_inline]] inline void roll(const RollingNumbers& law, double dt,
                                         const SphereRows& rows, const RowBatch& batch, int at,
-                                        const Three<W>& normal, const Three<W>& force, Passed& c) {
+                                        const Three<W>& normal, const Three<W>& force,
+                                        PairLanes& c) {
   using V = Lanes<W>;
   const V none{}, repulsion = -dot<W>(force, normal);
   const auto apart = loaded<W>(c.apart + at) != 0;
@@ -131,8 +132,8 @@ template <int W>
 
 /// SphereStore::overlap and motion_at. Lanes beyond the batch do later pairs' work, for nobody.
 template <int W, SphereLawKind kind>
-[[gnu::always_inline]] inline void meet(const SphereNumbers& law, const SphereRows& rows,
-                                        const RowBatch& batch, int at, Passed& to) {
+[[gnu::always_inline]] inline void measure_overlap(const RoundNumbers& law, const SphereRows& rows,
+                                                   const RowBatch& batch, int at, PairLanes& to) {
   using V = Lanes<W>;
   const V none{};
   const double *body_i[W], *body_j[W];
@@ -182,9 +183,9 @@ template <int W, SphereLawKind kind>
 /// turn_with_contact, the law, friction_force and forces_at, of central contacts; 0 of pairs that
 /// do not touch.
 template <int W, SphereLawKind kind, bool rolls>
-[[gnu::always_inline]] inline void press(const SphereNumbers& law, const RollingNumbers& rolling,
-                                         const SphereRows& rows, const RowBatch& batch, int at,
-                                         Passed& c) {
+[[gnu::always_inline]] inline void add_forces(const RoundNumbers& law,
+                                              const RollingNumbers& rolling, const SphereRows& rows,
+                                              const RowBatch& batch, int at, PairLanes& c) {
   using V = Lanes<W>;
   const V none{};
   const double* before[W];
@@ -230,8 +231,8 @@ template <int W, SphereLawKind kind, bool rolls>
 
 /// To the memories, and to the sums or what is kept of pairs. `full`: no lane is beyond the batch.
 template <int W, SphereLawKind kind, bool rolls, bool full>
-[[gnu::always_inline]] inline void give(const SphereRows& rows, const RowBatch& batch, int at,
-                                        const Passed& c) {
+[[gnu::always_inline]] inline void scatter(const SphereRows& rows, const RowBatch& batch, int at,
+                                           const PairLanes& c) {
   const int left = full ? W : batch.count - at;
   const int* const pairs = batch.pair + at;
   const Three<W> normal = three<W>(c.normal, at), force = three<W>(c.force, at);
@@ -293,19 +294,19 @@ template <int W, SphereLawKind kind, bool rolls, bool full>
 }
 
 template <int W, SphereLawKind kind, bool rolls>
-[[gnu::always_inline]] inline void forces(const SphereNumbers& law, const RollingNumbers& rolling,
+[[gnu::always_inline]] inline void forces(const RoundNumbers& law, const RollingNumbers& rolling,
                                           const SphereRows& rows, const RowBatch& batch) {
   static_assert(kPairsBehind >= kPairsAhead + W);
-  Passed passed;
-  for (int at = 0; at < batch.count; at += W) meet<W, kind>(law, rows, batch, at, passed);
+  PairLanes lanes;
+  for (int at = 0; at < batch.count; at += W) measure_overlap<W, kind>(law, rows, batch, at, lanes);
   for (int at = 0; at < batch.count; at += W)
-    press<W, kind, rolls>(law, rolling, rows, batch, at, passed);
+    add_forces<W, kind, rolls>(law, rolling, rows, batch, at, lanes);
   int at = 0;
-  for (; at + W <= batch.count; at += W) give<W, kind, rolls, true>(rows, batch, at, passed);
-  if (at < batch.count) give<W, kind, rolls, false>(rows, batch, at, passed);
+  for (; at + W <= batch.count; at += W) scatter<W, kind, rolls, true>(rows, batch, at, lanes);
+  if (at < batch.count) scatter<W, kind, rolls, false>(rows, batch, at, lanes);
 }
 template <int W, SphereLawKind kind>
-void forces(const SphereNumbers& law, const RollingNumbers& rolling, const SphereRows& rows,
+void forces(const RoundNumbers& law, const RollingNumbers& rolling, const SphereRows& rows,
             const RowBatch& batch) {
   if (rows.rolling != nullptr) return forces<W, kind, true>(law, rolling, rows, batch);
   forces<W, kind, false>(law, rolling, rows, batch);
@@ -314,7 +315,7 @@ void forces(const SphereNumbers& law, const RollingNumbers& rolling, const Spher
 }  // namespace
 
 template <int W>
-void sphere_forces_of(const SphereNumbers& law, const RollingNumbers& rolling,
+void sphere_forces_of(const RoundNumbers& law, const RollingNumbers& rolling,
                       const SphereRows& rows, const RowBatch& batch) {
   switch (law.kind) {
     case SphereLawKind::hertz:
@@ -325,7 +326,7 @@ void sphere_forces_of(const SphereNumbers& law, const RollingNumbers& rolling,
       return forces<W, SphereLawKind::penalty>(law, rolling, rows, batch);
   }
 }
-template void sphere_forces_of<GRAINFIELD_LANES>(const SphereNumbers& law,
+template void sphere_forces_of<GRAINFIELD_LANES>(const RoundNumbers& law,
                                                  const RollingNumbers& rolling,
                                                  const SphereRows& rows, const RowBatch& batch);
 

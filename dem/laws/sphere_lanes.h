@@ -13,7 +13,7 @@ namespace grainfield::dem {
 enum class SphereLawKind { hertz, linear, penalty };
 
 /// Numbers of a law of spheres, as its scalar form has them.
-struct SphereNumbers {
+struct RoundNumbers {
   SphereLawKind kind = SphereLawKind::hertz;
   double normal = 0, tangential = 0;  ///< stiffness; of Hertz' over the contact's radius
   /// Of dashpots: over the mass (linear), over mass and contact radius (viscoelastic), or
@@ -48,9 +48,9 @@ struct SphereRows {
 /// Their forces, added to the sums of both grains in the order of the pairs. The bits do not depend
 /// on W.
 template <int W>
-void sphere_forces_of(const SphereNumbers& law, const RollingNumbers& rolling,
+void sphere_forces_of(const RoundNumbers& law, const RollingNumbers& rolling,
                       const SphereRows& rows, const RowBatch& batch);
-inline void sphere_forces(const SphereNumbers& law, const RollingNumbers& rolling,
+inline void sphere_forces(const RoundNumbers& law, const RollingNumbers& rolling,
                           const SphereRows& rows, const RowBatch& batch) {
   with_lanes([&](auto width) { sphere_forces_of<width()>(law, rolling, rows, batch); });
 }

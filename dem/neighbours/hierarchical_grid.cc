@@ -166,7 +166,7 @@ void HierarchicalGrid<D>::find_pairs(int first, int last, IndexPairs& found) con
     for (int l = level_of_[i]; l < static_cast<int>(levels_.size()); ++l) {
       const Level& level = levels_[l];
       if (level.members.empty()) continue;
-      // Of two of one level the one in the earlier cell finds the other.
+      // The one in the earlier cell finds the other of two of one level.
       const bool own = l == level_of_[i];
       visit_cells(level, a, own ? cell_of_[i] : 0, [&](int j) {
         if (own && j <= i && cell_of_[j] == cell_of_[i]) return;

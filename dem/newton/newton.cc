@@ -36,7 +36,7 @@ Eigen::Map<Eigen::VectorXd> view(N_Vector v) {
   return {N_VGetArrayPointer(v), static_cast<Eigen::Index>(N_VGetLength(v))};
 }
 
-// Of the callbacks: 0 done, 1 try another point, -1 stop. No exception may cross C code.
+// What callbacks return: 0 done, 1 try another point, -1 stop. No exception may cross C code.
 template <class Body>
 int guarded(Work& w, Body body) {
   try {

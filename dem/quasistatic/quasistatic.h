@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dem/computation_failed.h"
 #include "dem/laws/materials.h"
 #include "dem/motion/applied_force.h"
+#include "dem/shared/computation_failed.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::dem {

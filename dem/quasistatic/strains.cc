@@ -16,8 +16,8 @@ namespace {
 // change it leaves about the linear solver's tolerance.
 constexpr double kMostLeft = 0.1;
 constexpr int kMostChords = 12;
-// Of the ratio asked for, what the mean resultant and mean moment must be below; and how many times
-// the ratio a single grain's may be (as Equilibrium::enough of a large packing).
+// Shares of the ratio asked for, which the mean resultant and mean moment must be below; and how
+// many times the ratio a single grain's may be (as Equilibrium::enough of a large packing).
 constexpr double kEnoughForce = 0.05, kEnoughMoment = 0.1, kMostOver = 100;
 
 /// The gradient or its opposite, the one whose first entry that is not 0 is positive.

@@ -15,13 +15,13 @@ void Archive::snapshot(std::optional<Snapshot>& snapshot, const std::string& nam
 
 void Archive::engine(std::unique_ptr<Engine>& engine,
                      const std::function<std::unique_ptr<Engine>()>& make) {
-  std::string image = engine && !is_reading() ? engine->image() : "";
-  (*this)(image);
+  std::string checkpoint = engine && !is_reading() ? engine->checkpoint() : "";
+  (*this)(checkpoint);
   if (!is_reading()) return;
   engine.reset();
-  if (image.empty()) return;
+  if (checkpoint.empty()) return;
   engine = make();
-  engine->restore(image);
+  engine->restore(checkpoint);
 }
 
 void Archive::require(bool holds) const {

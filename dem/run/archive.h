@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/engine/engine.h"
-#include "dem/image/image.h"
 #include "dem/run/common.h"
 #include "dem/run/run.h"
 
@@ -26,7 +26,7 @@ class Archive {
   Archive& operator=(const Archive&) = delete;
 
   bool is_reading() const { return reader_.has_value(); }
-  /// Plain values (image.h), vectors of them and strings.
+  /// Plain values (checkpoint.h), vectors of them and strings.
   template <class T>
   void operator()(T& value) {
     if (reader_) {
@@ -45,14 +45,14 @@ class Archive {
   void require(bool holds) const;
   /// Reading: throws when there is more than what was asked for.
   void finish() const;
-  const ImageWriter& written() const { return writer_; }
+  const CheckpointWriter& written() const { return writer_; }
   const NamedSnapshots& snapshots() const { return snapshots_; }
 
  private:
-  ImageWriter writer_;
+  CheckpointWriter writer_;
   NamedSnapshots snapshots_;
   std::string bytes_, file_;
-  std::optional<ImageReader> reader_;
+  std::optional<CheckpointReader> reader_;
 };
 
 /// A run that says what a checkpoint of it holds, and is saved and restored by that.

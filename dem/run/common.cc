@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/hdf5/file.h"
+#include "dem/hdf5/replace_file.h"
 #include "dem/laws/material_setup.h"
 #include "dem/laws/restitution.h"
 #include "dem/motion/leaping.h"
@@ -14,8 +16,6 @@
 #include "dem/run/outlook.h"
 #include "dem/run/run.h"
 #include "dem/run/setup.h"
-#include "dem/snapshot/hdf5_file.h"
-#include "dem/snapshot/replace_file.h"
 
 namespace grainfield::dem {
 namespace {
@@ -258,9 +258,9 @@ std::string smaller_step(const MotionSetup& m) {
 const std::string kLayout = "layout 2; ";
 
 void write_checkpoint(const std::string& file, const std::string& fingerprint,
-                      const ImageWriter& state, const NamedSnapshots& snapshots) {
+                      const CheckpointWriter& state, const NamedSnapshots& snapshots) {
   write_in_place_of(file, [&](const std::string& beside) {
-    ImageWriter w;
+    CheckpointWriter w;
     w.put(kLayout + fingerprint);
     w.put(state.bytes());
     hdf5::Handle handle = hdf5::open_for_adding(beside);
@@ -276,7 +276,7 @@ std::string read_checkpoint(const std::string& file, const std::string& fingerpr
     const hdf5::Handle handle = hdf5::open_for_reading(file);
     bytes = hdf5::read_bytes(handle, "checkpoint", file);
   }
-  ImageReader r(bytes);
+  CheckpointReader r(bytes);
   std::string of, state;
   r.get(of);
   if (of != kLayout + fingerprint) {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/engine/engine.h"
-#include "dem/image/image.h"
 #include "dem/laws/material_setup.h"
 #include "dem/motion/motion_setup.h"
 #include "dem/run/setup.h"
@@ -82,7 +82,7 @@ using NamedSnapshots = std::vector<std::pair<std::string, Snapshot>>;
 /// Writes a checkpoint beside `file` and renames it: the fingerprint of the setup, the state's bits
 /// and the snapshots taken so far. Throws StorageFailed.
 void write_checkpoint(const std::string& file, const std::string& fingerprint,
-                      const ImageWriter& state, const NamedSnapshots& snapshots);
+                      const CheckpointWriter& state, const NamedSnapshots& snapshots);
 /// The state's bits. Throws std::invalid_argument naming the file when it is broken, OtherSetup
 /// when it has another fingerprint.
 std::string read_checkpoint(const std::string& file, const std::string& fingerprint);

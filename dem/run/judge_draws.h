@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "dem/heap/grain_family.h"
-#include "dem/packing/packing.h"
+#include "dem/grains/grain_family.h"
+#include "dem/grains/packing.h"
 #include "dem/random/random.h"
 
 namespace grainfield::dem {

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::dem {
 namespace {

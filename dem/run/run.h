@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/computation_failed.h"
+#include "dem/shared/computation_failed.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::dem {

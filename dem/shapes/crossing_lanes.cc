@@ -125,7 +125,7 @@ GRAINFIELD_INLINE bool may_cross(const Corners& a, const Corners& b, int size, s
   if (!((e.ea < a.n) & (e.la < a.n) & (e.eb < b.n) & (e.lb < b.n))) return false;
   const int inner_a = between(e.ea, e.la, a.n), inner_b = between(e.eb, e.lb, b.n);
   if ((inner_a > 2) | (inner_b > 2)) return false;
-  // Of one that is inside both are the same.
+  // Both are the same for one that is inside.
   const bool a_in =
       are_inside<C, stride>(b, size, a.x[e.ea + 1], a.y[e.ea + 1], a.x[e.la], a.y[e.la]);
   const bool b_in =

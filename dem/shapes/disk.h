@@ -72,7 +72,7 @@ inline bool overlap_of_disks(double dx, double dy, double ri, double rj, Overlap
     const double half = std::sqrt(sag_i * (ri + overlap.arm_i));
     overlap.chord = 2 * half;
     overlap.area = segment_area(ri, overlap.arm_i, half) + segment_area(rj, overlap.arm_j, half);
-    // Of a deep overlap an arm can be negative; the length stays positive and bounded below.
+    // An arm of a deep overlap can be negative; the length stays positive and bounded below.
     const double ai = std::fmax(overlap.arm_i, 0.25 * ri), aj = std::fmax(overlap.arm_j, 0.25 * rj);
     overlap.length = ai * aj / (ai + aj);
   }

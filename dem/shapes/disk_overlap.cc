@@ -13,8 +13,8 @@ namespace grainfield::dem::region {
 
 namespace {
 
-// Of the radius: half chords below this are no contact of circle and edge (the disk protrudes by
-// less than 1e-14 of its radius: round-off).
+// Half chords below this share of the radius are no contact of circle and edge (the disk protrudes
+// by less than 1e-14 of its radius: round-off).
 constexpr double kLeastHalfChord = 1e-7;
 
 // The polygon edge k seen from the disk's centre.
@@ -49,7 +49,7 @@ Arcs arcs_of(const Loop& loop, double arc, double radius, bool centre_inside) {
     const double half = 0.5 * std::sqrt(dx * dx + dy * dy);
     // Distance of the centre from the chord, to its left.
     double arm = half > 0 ? -(dx * qy - dy * qx) / (2 * half) : radius;
-    // Of a chord that is round-off, the arc is the whole circle only if nothing else is there.
+    // The arc of a chord that is round-off is the whole circle only if nothing else is there.
     if (half < kLeastHalfChord * radius) arm = size < 1e-6 * radius && centre_inside ? -1 : 1;
     // Near a diameter the half chord alone says little about the angle.
     arcs.area += half < 0.7 * radius ? segment_area(radius, arm, half)

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dem/image/image.h"
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/shapes/disk.h"
 #include "dem/shapes/polygon.h"
 #include "dem/shapes/solid.h"
@@ -60,8 +60,8 @@ class DiskStore {
     return true;
   }
 
-  void write(ImageWriter&) const {}
-  void read(ImageReader&, std::size_t) {}
+  void write(CheckpointWriter&) const {}
+  void read(CheckpointReader&, std::size_t) {}
 };
 
 }  // namespace grainfield::dem

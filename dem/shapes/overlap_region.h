@@ -191,7 +191,7 @@ inline bool contact_of_loop(const PlacedShape& a, const PlacedShape& b, const Lo
   }
   add_arcs(e, o.nx, o.ny, x0 * ty - y0 * tx, x0 * tx + y0 * ty);
   o.depth = e.high_n - e.low_n;
-  // Of more than two crossings the sums can leave the region: then its border is as far as s goes.
+  // The sums of more than two crossings can leave the region: then its border is as far as s goes.
   double along_t = 0.5 * (s.sxx + s.syy) * inverse;
   double along_n = (tx * ty * (s.sxx - s.syy) + s.sxy * (ty * ty - tx * tx)) * inverse;
   const bool exact = measures == Measures::gradient;

@@ -257,7 +257,7 @@ GRAINFIELD_INLINE void step(PairBatch& batch, const int* slots, int count, bool 
   }
   if (!any_of(settled)) return;
 
-  // Of body i less that of j.
+  // Body i's less body j's.
   const auto on = [&](const Side<W>& side) {
     const LaneBend<W>& c = side.bend;
     const V moved = c.weight * (c.x * step_x + c.y * step_y);

@@ -27,7 +27,7 @@ namespace {
 
 using region::Loop;
 
-// Of r_i + r_j: what the slab is widened by, far above round-off, far below anything that costs.
+// What the slab is widened by, over r_i + r_j: far above round-off, far below anything that costs.
 constexpr double kSlabMargin = 1e-9;
 
 // True when edge k of `shape` has no corner of `other` on its inner side. `gap`: the least distance

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "dem/image/image.h"
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/shapes/bounding_rectangle.h"
 #include "dem/shapes/crossing_lanes.h"
 #include "dem/shapes/place_lanes.h"
@@ -178,13 +178,13 @@ class PolygonStore {
     return true;
   }
 
-  void write(ImageWriter& w) const {
+  void write(CheckpointWriter& w) const {
     w.put(stride_);
     w.put(count_);
     w.put(corners_);
     w.put(equal_radius_);
   }
-  void read(ImageReader& r, std::size_t grains) {
+  void read(CheckpointReader& r, std::size_t grains) {
     r.get(stride_);
     r.get(count_);
     r.get(corners_);

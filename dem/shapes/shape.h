@@ -8,7 +8,7 @@
 #include <concepts>
 #include <vector>
 
-#include "dem/image/image.h"
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/shapes/solid.h"
 #include "dem/space/body.h"
 #include "dem/space/overlap.h"
@@ -31,7 +31,7 @@ concept Shape = std::default_initializable<typename S::Feature> && std::default_
     requires(S& store, const S& same, const ShapeInput& input, int i, const Body<S::dim>& body,
              const RotationOf<S::dim>& rotation, const Plane<S::dim>& plane,
              const std::vector<int>& order, typename S::Feature& feature,
-             typename S::Overlap& overlap, ImageWriter& writer, ImageReader& reader) {
+             typename S::Overlap& overlap, CheckpointWriter& writer, CheckpointReader& reader) {
   { S::outlines } -> std::convertible_to<bool>;
   { S::central } -> std::convertible_to<bool>;
   { S::keeps_places } -> std::convertible_to<bool>;

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dem/image/image.h"
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/shapes/solid.h"
 #include "dem/space/body.h"
 #include "dem/space/overlap.h"
@@ -73,8 +73,8 @@ class SphereStore {
     return true;
   }
 
-  void write(ImageWriter&) const {}
-  void read(ImageReader&, std::size_t) {}
+  void write(CheckpointWriter&) const {}
+  void read(CheckpointReader&, std::size_t) {}
 
  private:
   static void set_curvatures(Overlap& o) {

@@ -39,7 +39,7 @@ Norm norm_of(double a, double b, double power) {
     share = at.share;
     root = at.root;
   }
-  // Of the greater one: over the size.
+  // The greater component over the size.
   const double part = 1 / root, whole = 1 + share, rest = ratio * part;
   const double pull_most = 1 / (whole * part), pull_least = share / (whole * rest);
   Norm out;
@@ -273,7 +273,7 @@ PlanePrincipal principal_of(const PlaneTensor& t) {
   out.greater = 0.5 * ((t.xx + t.yy) + root);
   if (!(out.greater > 0)) return out;
   out.lesser = t.determinant / out.greater;
-  // Of an eigenvector both forms hold; the longer one is without a difference.
+  // Both forms of an eigenvector hold; the longer one is without a difference.
   const double straight = 0.5 * (std::fabs(apart) + root);
   const double size = std::sqrt(straight * straight + t.xy * t.xy);
   if (!(size > 0)) return out;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "dem/image/image.h"
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/shapes/common_normal.h"
 #include "dem/shapes/solid.h"
 #include "dem/space/body.h"
@@ -211,8 +211,8 @@ class SuperellipsoidStore {
     return true;
   }
 
-  void write(ImageWriter& w) const { w.put(grains_); }
-  void read(ImageReader& r, std::size_t grains) {
+  void write(CheckpointWriter& w) const { w.put(grains_); }
+  void read(CheckpointReader& r, std::size_t grains) {
     r.get(grains_);
     r.require(grains_.size() == grains);
     lanes_.resize(grains);
@@ -244,7 +244,7 @@ class SuperellipsoidStore {
                    Overlap& o) {
     feature.clear = std::numeric_limits<double>::infinity();
     if (!touches) {
-      // Of a search that ended exactly in touch nothing is known along the normal that it left.
+      // A search that ended exactly in touch tells nothing along the normal that it left.
       if (contact.depth < 0) {
         feature.clear = across.dot(feature.normal) + contact.depth - (first.swept + second.swept);
       }

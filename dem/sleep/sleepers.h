@@ -129,7 +129,7 @@ class Sleepers {
     asleep_[i] = 1;
     rests_[i] = {};
     rests_[i].force = weight;
-    rests_[i].press = weight.norm();
+    rests_[i].force_sum = weight.norm();
     touches_[i] = {};
     lasting_[i] = {};
     hidden_[i] = {};
@@ -165,7 +165,7 @@ class Sleepers {
     Sum& rest = rests_[i];
     rest.force += on_sleeper.force;
     rest.torque += on_sleeper.torque_i;
-    rest.press += on_sleeper.force.norm();
+    rest.force_sum += on_sleeper.force.norm();
     stir(i);
   }
   /// A frozen contact is felt anew from now on: it leaves what the sleeper carries.
@@ -173,7 +173,7 @@ class Sleepers {
     Sum& rest = rests_[i];
     rest.force -= on_sleeper.force;
     rest.torque -= on_sleeper.torque_i;
-    rest.press -= on_sleeper.force.norm();
+    rest.force_sum -= on_sleeper.force.norm();
     stir(i);
   }
   /// What a sleeper has felt of awake neighbours, summed over the steps since the last review.
@@ -181,7 +181,7 @@ class Sleepers {
     Sum& t = touches_[i];
     t.force -= felt.force;
     t.torque += felt.torque;
-    t.press += felt.press;
+    t.force_sum += felt.force_sum;
     stir(i);
   }
   /// Its forces may be other ones than when it was judged last.
@@ -197,7 +197,7 @@ class Sleepers {
     const double share = steps > 0 ? 1.0 / static_cast<double>(steps) : 0.0;
     const Sum &rest = rests_[i], &touch = touches_[i];
     Sum mean;
-    mean.press = rest.press + share * touch.press;
+    mean.force_sum = rest.force_sum + share * touch.force_sum;
     return {rest.force + share * touch.force, rest.torque + share * touch.torque, mean.load()};
   }
   /// The residual `now` joins the mean over the last reviews with this weight, at most 1; returns

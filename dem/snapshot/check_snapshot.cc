@@ -9,6 +9,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "dem/shared/refuse.h"
 #include "dem/snapshot/images.h"
 #include "dem/snapshot/limits.h"
 
@@ -17,10 +18,6 @@ namespace {
 
 // Area or volume of the periodic edges over the product of their lengths: less is flat.
 constexpr double kFlat = 1e-9;
-
-[[noreturn]] void refuse(const std::string& where, const std::string& what) {
-  throw std::invalid_argument(fmt::format("{}: {}", where, what));
-}
 
 // Written by another program they need not be in ascending order.
 void check_ids(const Snapshot& s, const std::string& where) {
@@ -164,7 +161,7 @@ void check_images(const Snapshot& s, const std::string& where) {
   }
 }
 
-// Of contact k, whose grains and image there are.
+// Contact k, whose grains and image there are.
 void check_contact(const Snapshot& s, std::size_t k, const std::string& where) {
   const Contact& c = s.contacts[k];
   if (!is_unit(c.normal))

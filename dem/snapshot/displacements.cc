@@ -17,7 +17,7 @@ namespace {
 
 using Image = std::array<int, 3>;
 
-// Of an edge: beyond a half another image is nearer.
+// Share of an edge: beyond a half another image is nearer.
 constexpr double kFar = 1.0 / 3;
 // Least share of the largest one of the pivots of a fit: below, no contact says anything.
 constexpr double kRank = 1e-9;

@@ -7,8 +7,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "dem/snapshot/hdf5_file.h"
-#include "dem/snapshot/number.h"
+#include "dem/hdf5/file.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/table_file.h"
 
 namespace grainfield::dem {

@@ -15,11 +15,11 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "dem/hdf5/crc.h"
+#include "dem/hdf5/file.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/check_snapshot.h"
-#include "dem/snapshot/hdf5_crc.h"
-#include "dem/snapshot/hdf5_file.h"
 #include "dem/snapshot/limits.h"
-#include "dem/snapshot/number.h"
 #include "dem/snapshot/number_tables.h"
 #include "dem/snapshot/table_file.h"
 #include "dem/snapshot/wall_forces.h"
@@ -60,7 +60,7 @@ const char* what_is_allowed(double found) {
   return std::isfinite(found) ? "of size 1e+100 at most" : "a finite number";
 }
 
-// Of an attribute.
+// The size of an attribute's number.
 void require_size(double found, const std::string& name, const std::string& where) {
   if (std::fabs(found) <= kMostNumber) return;
   throw std::invalid_argument(fmt::format("{}: attribute '{}' is {}; it must be {}", where, name,

@@ -11,8 +11,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "dem/hdf5/file.h"
 #include "dem/snapshot/columns.h"
-#include "dem/snapshot/hdf5_file.h"
 #include "dem/snapshot/limits.h"
 
 namespace grainfield::dem {

@@ -37,17 +37,17 @@ template <int D>
 struct alignas(D == 2 ? 32 : 64) ForceSum {
   VectorOf<D> force = zero<VectorOf<D>>();
   SpinOf<D> torque = zero<SpinOf<D>>();
-  double press = 0;  ///< sum of the forces' lengths; where sleeping is judged
+  double force_sum = 0;  ///< sum of the forces' lengths; where sleeping is judged
 
   /// Of the second grain of a contact, without turning the force round: what a sleeper feels.
   void add_second(const ContactForce<D>& f) {
     force += f.force;
     torque += f.torque_j;
-    press += f.force.norm();
+    force_sum += f.force.norm();
   }
   /// What a grain passes on when all forces on it, its weight too, are in the sum, N: a column of
   /// grains carries its weight above each of them and the grain's own.
-  double load() const { return 0.5 * press; }
+  double load() const { return 0.5 * force_sum; }
 };
 
 }  // namespace grainfield::dem

@@ -12,8 +12,8 @@ struct Four {
 
 namespace lane_rows {
 
-// Of blocks of four rows by four columns; of eight lanes two blocks side by side, rows 0 to 3 and
-// 4 to 7. Its own inverse.
+// Blocks of four rows by four columns, turned; of eight lanes two blocks side by side, rows 0 to 3
+// and 4 to 7. Its own inverse.
 template <int W>
 [[gnu::always_inline]] inline Four<W> turned_about(const Four<W>& x) {
   if constexpr (W == 4) {
@@ -61,39 +61,39 @@ template <int W, class Row>
   }
 }
 
-/// The rows of four columns: give(k, row of lane k), one lane after the other.
-template <int W, class Give>
-[[gnu::always_inline]] inline void each_row(const Four<W>& columns, Give give) {
+/// The rows of four columns: visit(k, row of lane k), one lane after the other.
+template <int W, class Visit>
+[[gnu::always_inline]] inline void each_row(const Four<W>& columns, Visit visit) {
   const auto join = [](const Lanes<2>& first, const Lanes<2>& second) {
     return __builtin_shufflevector(first, second, 0, 1, 2, 3);
   };
   if constexpr (W == 2) {
-    give(0, join(__builtin_shufflevector(columns.a, columns.b, 0, 2),
-                 __builtin_shufflevector(columns.c, columns.d, 0, 2)));
-    give(1, join(__builtin_shufflevector(columns.a, columns.b, 1, 3),
-                 __builtin_shufflevector(columns.c, columns.d, 1, 3)));
+    visit(0, join(__builtin_shufflevector(columns.a, columns.b, 0, 2),
+                  __builtin_shufflevector(columns.c, columns.d, 0, 2)));
+    visit(1, join(__builtin_shufflevector(columns.a, columns.b, 1, 3),
+                  __builtin_shufflevector(columns.c, columns.d, 1, 3)));
   } else {
     const Four<W> rows = lane_rows::turned_about<W>(columns);
     const auto first = [](const Lanes<W>& x) { return __builtin_shufflevector(x, x, 0, 1, 2, 3); };
-    give(0, first(rows.a));
-    give(1, first(rows.b));
-    give(2, first(rows.c));
-    give(3, first(rows.d));
+    visit(0, first(rows.a));
+    visit(1, first(rows.b));
+    visit(2, first(rows.c));
+    visit(3, first(rows.d));
     if constexpr (W == 8) {
       const auto second = [](const Lanes<8>& x) {
         return __builtin_shufflevector(x, x, 4, 5, 6, 7);
       };
-      give(4, second(rows.a));
-      give(5, second(rows.b));
-      give(6, second(rows.c));
-      give(7, second(rows.d));
+      visit(4, second(rows.a));
+      visit(5, second(rows.b));
+      visit(6, second(rows.c));
+      visit(7, second(rows.d));
     }
   }
 }
 /// The same of six columns of eight lanes: rows of eight numbers, the last two 0.
-template <class Give>
+template <class Visit>
 [[gnu::always_inline]] inline void each_row_of_six(const Four<8>& four, const Lanes<8>& e,
-                                                   const Lanes<8>& f, Give give) {
+                                                   const Lanes<8>& f, Visit visit) {
   const Lanes<8> none{};
   // Pairs of numbers of rows 0, 2, 4, 6 and of rows 1, 3, 5, 7; then four rows' of each side by
   // side.
@@ -103,10 +103,10 @@ template <class Give>
     const auto high = __builtin_shufflevector(ab, cd, 4, 5, 12, 13, 6, 7, 14, 15);
     const auto last_low = __builtin_shufflevector(ef, none, 0, 1, 8, 9, 2, 3, 8, 9);
     const auto last_high = __builtin_shufflevector(ef, none, 4, 5, 8, 9, 6, 7, 8, 9);
-    give(at, __builtin_shufflevector(low, last_low, 0, 1, 2, 3, 8, 9, 10, 11));
-    give(at + 2, __builtin_shufflevector(low, last_low, 4, 5, 6, 7, 12, 13, 14, 15));
-    give(at + 4, __builtin_shufflevector(high, last_high, 0, 1, 2, 3, 8, 9, 10, 11));
-    give(at + 6, __builtin_shufflevector(high, last_high, 4, 5, 6, 7, 12, 13, 14, 15));
+    visit(at, __builtin_shufflevector(low, last_low, 0, 1, 2, 3, 8, 9, 10, 11));
+    visit(at + 2, __builtin_shufflevector(low, last_low, 4, 5, 6, 7, 12, 13, 14, 15));
+    visit(at + 4, __builtin_shufflevector(high, last_high, 0, 1, 2, 3, 8, 9, 10, 11));
+    visit(at + 6, __builtin_shufflevector(high, last_high, 4, 5, 6, 7, 12, 13, 14, 15));
   };
   const auto even = [](const Lanes<8>& x, const Lanes<8>& y) {
     return __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14);
@@ -118,29 +118,29 @@ template <class Give>
   side_by_side(odd(four.a, four.b), odd(four.c, four.d), odd(e, f), 1);
 }
 /// The same of two columns.
-template <int W, class Give>
-[[gnu::always_inline]] inline void each_pair(const Lanes<W>& a, const Lanes<W>& b, Give give) {
+template <int W, class Visit>
+[[gnu::always_inline]] inline void each_pair(const Lanes<W>& a, const Lanes<W>& b, Visit visit) {
   if constexpr (W == 2) {
-    give(0, __builtin_shufflevector(a, b, 0, 2));
-    give(1, __builtin_shufflevector(a, b, 1, 3));
+    visit(0, __builtin_shufflevector(a, b, 0, 2));
+    visit(1, __builtin_shufflevector(a, b, 1, 3));
   } else if constexpr (W == 4) {
     const auto even = __builtin_shufflevector(a, b, 0, 4, 2, 6);
     const auto odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-    give(0, __builtin_shufflevector(even, even, 0, 1));
-    give(1, __builtin_shufflevector(odd, odd, 0, 1));
-    give(2, __builtin_shufflevector(even, even, 2, 3));
-    give(3, __builtin_shufflevector(odd, odd, 2, 3));
+    visit(0, __builtin_shufflevector(even, even, 0, 1));
+    visit(1, __builtin_shufflevector(odd, odd, 0, 1));
+    visit(2, __builtin_shufflevector(even, even, 2, 3));
+    visit(3, __builtin_shufflevector(odd, odd, 2, 3));
   } else {
     const auto even = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
     const auto odd = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
-    give(0, __builtin_shufflevector(even, even, 0, 1));
-    give(1, __builtin_shufflevector(odd, odd, 0, 1));
-    give(2, __builtin_shufflevector(even, even, 2, 3));
-    give(3, __builtin_shufflevector(odd, odd, 2, 3));
-    give(4, __builtin_shufflevector(even, even, 4, 5));
-    give(5, __builtin_shufflevector(odd, odd, 4, 5));
-    give(6, __builtin_shufflevector(even, even, 6, 7));
-    give(7, __builtin_shufflevector(odd, odd, 6, 7));
+    visit(0, __builtin_shufflevector(even, even, 0, 1));
+    visit(1, __builtin_shufflevector(odd, odd, 0, 1));
+    visit(2, __builtin_shufflevector(even, even, 2, 3));
+    visit(3, __builtin_shufflevector(odd, odd, 2, 3));
+    visit(4, __builtin_shufflevector(even, even, 4, 5));
+    visit(5, __builtin_shufflevector(odd, odd, 4, 5));
+    visit(6, __builtin_shufflevector(even, even, 6, 7));
+    visit(7, __builtin_shufflevector(odd, odd, 6, 7));
   }
 }
 

@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "dem/shared/refuse.h"
+
 namespace grainfield::dem {
 namespace {
 
@@ -101,8 +103,6 @@ std::string text_of(double value) { return fmt::format("{:.6g}", value); }
 std::string text_of(const Eigen::Vector3d& v) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", v[0], v[1], v[2]);
 }
-
-[[noreturn]] void refuse(const std::string& text) { throw std::invalid_argument(text); }
 
 }  // namespace
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "dem/image/image.h"
+#include "dem/checkpoint/checkpoint.h"
 
 namespace grainfield::dem {
 namespace {
@@ -46,7 +46,7 @@ SwitchingDisks::SwitchingDisks(const SwitchScene& scene, const std::vector<Body<
   find_accelerations();
   find_pairs();
   for (const Pair& p : pairs_) {
-    if (meet(p).gap < 0) make_soft(p);
+    if (meeting_of(p).gap < 0) make_soft(p);
   }
   tally_ = {};
   disks_.set_acting(soft_);
@@ -118,7 +118,7 @@ void SwitchingDisks::find_pairs() {
             [](const Pair& a, const Pair& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
 }
 
-SwitchingDisks::Meeting SwitchingDisks::meet(const Pair& p) const {
+SwitchingDisks::Meeting SwitchingDisks::meeting_of(const Pair& p) const {
   Meeting m;
   const Body<2>& a = moving_[p.i];
   const double half = 0.5 * time_step_ * time_step_;
@@ -170,12 +170,12 @@ void SwitchingDisks::collide_all() {
     bool again = false;
     for (const Pair& p : pairs_) {
       if (is_soft(p)) continue;
-      Meeting m = meet(p);
+      Meeting m = meeting_of(p);
       if (!(m.end < 0)) continue;
       if (m.parting < 0) {
         collide_pair(p, m.normal);
         again = true;
-        m = meet(p);
+        m = meeting_of(p);
       }
       if (m.closing > 0 && time_step_ * m.closing > m.parting) {
         make_soft(p);  // (22)
@@ -195,7 +195,7 @@ void SwitchingDisks::look_back() {
   const std::vector<char> before = soft_;  // in the step: these contacts acted
   std::vector<char> touches(soft_.size(), 0);
   for (const Pair& p : pairs_) {
-    const double overlap = -meet(p).gap;
+    const double overlap = -meeting_of(p).gap;
     if (!(overlap > 0)) continue;
     if (!before[p.i] || (p.j >= 0 && !before[p.j])) {
       const double stiffness =
@@ -215,9 +215,9 @@ void SwitchingDisks::look_back() {
   }
 }
 
-std::string SwitchingDisks::image() const {
-  ImageWriter out;
-  out.put(disks_.image());
+std::string SwitchingDisks::checkpoint() const {
+  CheckpointWriter out;
+  out.put(disks_.checkpoint());
   out.put(soft_);
   for (const long value : {tally_.collisions, tally_.to_soft, tally_.to_hard, tally_.pressed}) {
     out.put(static_cast<std::int64_t>(value));
@@ -227,8 +227,8 @@ std::string SwitchingDisks::image() const {
   return out.bytes();
 }
 
-void SwitchingDisks::restore(const std::string& image) {
-  ImageReader in(image);
+void SwitchingDisks::restore(const std::string& checkpoint) {
+  CheckpointReader in(checkpoint);
   std::string disks;
   in.get(disks);
   const std::size_t n = soft_.size();

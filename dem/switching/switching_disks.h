@@ -71,8 +71,8 @@ class SwitchingDisks {
   }
 
   /// As SoftDisks.
-  std::string image() const;
-  void restore(const std::string& image);
+  std::string checkpoint() const;
+  void restore(const std::string& checkpoint);
 
  private:
   using Vec = VectorOf<2>;
@@ -90,7 +90,7 @@ class SwitchingDisks {
   void make_soft(const Pair& p);
   void find_pairs();
   void find_accelerations();
-  Meeting meet(const Pair& p) const;
+  Meeting meeting_of(const Pair& p) const;
   void collide_pair(const Pair& p, const Vec& normal);
   void collide_all();
   void look_back();

@@ -13,10 +13,15 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dem/shared/refuse.h"
 #include "dem/space/space3.h"
 
 namespace grainfield::dem {
 namespace {
+
+std::string named(const std::string& what, std::size_t facet) {
+  return fmt::format("{}: facet {}", what, facet + 1);
+}
 
 namespace bg = boost::geometry;
 using Point = bg::model::point<double, 3, bg::cs::cartesian>;
@@ -25,10 +30,6 @@ using Box = bg::model::box<Point>;
 constexpr double kLeastShape = 1e-10;  // area of a facet / longest edge squared
 constexpr double kSamePlace = 1e-9;    // of the reach: two nearest points are one
 constexpr int kMostMinima = 32;        // kept while a ball's triangles are looked at
-
-[[noreturn]] void refuse(const std::string& what, std::size_t facet, const std::string& why) {
-  throw std::invalid_argument(fmt::format("{}: facet {}: {}", what, facet + 1, why));
-}
 
 /// A place where a triangle is nearest to a centre.
 struct Minimum {
@@ -200,12 +201,12 @@ MeshTopology topology_of(const Triangles& triangles, const std::string& what) {
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const auto& [a, b, c] = triangles[t];
     if (!(a.allFinite() && b.allFinite() && c.allFinite())) {
-      refuse(what, t, "a corner's coordinate is not a finite number");
+      refuse(named(what, t), "a corner's coordinate is not a finite number");
     }
     const double longest =
         std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
     if (!((b - a).cross(c - a).norm() > kLeastShape * longest)) {
-      refuse(what, t, "has no area; leave it out");
+      refuse(named(what, t), "has no area; leave it out");
     }
     mesh.volume += a.dot(b.cross(c)) / 6;
     std::array<int, 3> corners{};
@@ -220,7 +221,7 @@ MeshTopology topology_of(const Triangles& triangles, const std::string& what) {
       const std::pair edge(corners[k], corners[(k + 1) % 3]);
       const auto [it, is_new] = edges.emplace(edge, std::pair(static_cast<int>(t), k));
       if (!is_new) {
-        refuse(what, t,
+        refuse(named(what, t),
                fmt::format("turned against facet {}, or a third one at their edge; neighbours must "
                            "be counter-clockwise from the same side",
                            it->second.first + 1));

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dem/shared/refuse.h"
 #include "dem/space/space3.h"
 
 namespace grainfield::dem {
@@ -21,10 +22,6 @@ namespace {
 // Binary: 80 characters, the number of facets, and 50 bytes a facet: normal, corners, 2 bytes.
 constexpr std::size_t kHead = 84, kFacet = 50;
 static_assert(std::endian::native == std::endian::little);
-
-[[noreturn]] void refuse(const std::string& file, const std::string& why) {
-  throw std::invalid_argument(fmt::format("{}: {}", file, why));
-}
 
 struct Facets {
   Triangles corners;

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "dem/shared/refuse.h"
 #include "dem/walls/mesh.h"
 #include "dem/walls/round.h"
 #include "dem/words/choice.h"
@@ -11,15 +12,13 @@
 namespace grainfield::dem {
 namespace {
 
-void require(bool holds, const Wall& wall, const char* what, double found, const char* allowed) {
-  if (holds) return;
-  throw std::invalid_argument(
-      fmt::format("wall {}: {}: found {:g}, allowed: {}", wall.name, what, found, allowed));
+std::string of(const Wall& wall, const char* what) {
+  return fmt::format("wall {}: {}", wall.name, what);
 }
 
 Eigen::Vector3d axis_of(const Wall& wall) {
   const double size = wall.normal.norm();
-  require(size > 0, wall, "length of the normal or axis", size, "above 0");
+  require(size > 0, of(wall, "length of the normal or axis"), size, "above 0");
   return wall.normal / size;
 }
 
@@ -52,15 +51,15 @@ struct CylinderKind {
   static constexpr const char* name = "cylinder";
   template <int D>
   static std::unique_ptr<WallSurface<D>> make(const Wall& wall) {
-    require(wall.radius > 0, wall, "radius", wall.radius, "above 0 m");
-    require(wall.length >= 0, wall, "length", wall.length, "0 (without ends) or more, m");
+    require(wall.radius > 0, of(wall, "radius"), wall.radius, "above 0 m");
+    require(wall.length >= 0, of(wall, "length"), wall.length, "0 (without ends) or more, m");
     if constexpr (D == 3) {
       if (wall.length > 0) {
         return std::make_unique<RoundShell>(wall.radius, wall.radius, wall.length, axis_of(wall));
       }
       return std::make_unique<EndlessCylinder<3>>(wall.radius, wall.inside, axis_of(wall));
     } else {
-      require(wall.length == 0, wall, "length", wall.length, "0 in 2D");
+      require(wall.length == 0, of(wall, "length"), wall.length, "0 in 2D");
       return std::make_unique<EndlessCylinder<2>>(wall.radius, wall.inside, Vec3::UnitZ());
     }
   }
@@ -70,10 +69,10 @@ struct ConeKind {
   static constexpr const char* name = "cone";
   template <int D>
   requires(D == 3) static std::unique_ptr<WallSurface<D>> make(const Wall& wall) {
-    require(wall.radius >= 0, wall, "radius", wall.radius, "0 m or more");
-    require(wall.end_radius >= 0, wall, "end radius", wall.end_radius, "0 m or more");
-    require(wall.radius + wall.end_radius > 0, wall, "both radii", 0, "one of them above 0 m");
-    require(wall.length > 0, wall, "length", wall.length, "above 0 m");
+    require(wall.radius >= 0, of(wall, "radius"), wall.radius, "0 m or more");
+    require(wall.end_radius >= 0, of(wall, "end radius"), wall.end_radius, "0 m or more");
+    require(wall.radius + wall.end_radius > 0, of(wall, "both radii"), 0, "one of them above 0 m");
+    require(wall.length > 0, of(wall, "length"), wall.length, "above 0 m");
     return std::make_unique<RoundShell>(wall.radius, wall.end_radius, wall.length, axis_of(wall));
   }
 };

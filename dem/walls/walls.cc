@@ -331,7 +331,7 @@ void Walls<D>::set_margin(int wall, double lever, double way) {
   s.way = way;
 }
 
-/// Servos of an image that name walls which are there.
+/// Servos of a checkpoint that name walls which are there.
 template <int D>
 bool Walls<D>::fits() const {
   if (states_.size() != walls_.size()) return false;

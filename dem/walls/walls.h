@@ -14,7 +14,7 @@
 
 namespace grainfield::dem {
 
-/// What changes of a wall, in bits without gaps: it goes into images, and these are compared.
+/// What changes of a wall, in bits without gaps: it goes into checkpoints, and these are compared.
 template <int D>
 struct WallState {
   using Vector = VectorOf<D>;
@@ -131,7 +131,7 @@ class Walls {
     each(self.states_);
   }
   bool fits() const;
-  void restored();  ///< after states have come from an image
+  void restored();  ///< after states have come from a checkpoint
 
  private:
   void mark(int wall);

@@ -28,7 +28,7 @@ void fe_layer(benchmark::State& state) {
 
 }  // namespace
 
-// Of the last mesh: 4e3 to 1e6 unknowns.
+// The last mesh has 4e3 to 1e6 unknowns.
 BENCHMARK(fe_layer)
     ->ArgNames({"cells", "degree"})
     ->ArgsProduct({{8, 16, 32, 64, 128}, {2}})

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem/grains/lattice_pile.h"
 #include "dem/implicit/soft_disks.h"
-#include "dem/packing/lattice_pile.h"
 #include "dem/random/random.h"
 
 namespace {

@@ -136,7 +136,7 @@ dem::Snapshot copied(const dem::Snapshot& layer, int n) {
   return out;
 }
 
-// Of GRAINFIELD_LAYER, FILE:GROUP, the layer and GRAINFIELD_COPIES by as many, with spheres as
+// The layer of GRAINFIELD_LAYER, FILE:GROUP, and GRAINFIELD_COPIES by as many, with spheres as
 // point-load-3d has them; none where it is not set.
 struct RunLayer {
   dem::Snapshot layer;

@@ -20,15 +20,15 @@
 #include <utility>
 #include <vector>
 
+#include "coupling/specimen/relaxation.h"
 #include "coupling/studies/pile/simulation.h"
-#include "dem/computation_failed.h"
 #include "dem/engine/engine.h"
-#include "dem/heap/grain_family.h"
-#include "dem/heap/relaxation.h"
+#include "dem/grains/grain_family.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/random/random.h"
 #include "dem/run/common.h"
 #include "dem/run/setup.h"
+#include "dem/shared/computation_failed.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace {
@@ -125,7 +125,7 @@ dem::Snapshot relaxed(const dem::Snapshot& heap, const dem::EngineSettings& sett
         "  newton: {} iterations, {} contacts gained, {} lost, a grain moves by {:.3f} radii",
         r.iterations, r.contacts_gained, r.contacts_lost, moved);
     state = std::move(r.state);
-  } catch (const dem::ComputationFailed& failure) {
+  } catch (const grainfield::ComputationFailed& failure) {
     fmt::print("  newton: {}", failure.what());
     ++out.failed;
   }
@@ -185,7 +185,7 @@ Drops drop(const PileSetup& setup, const dem::Snapshot& heap, int drops, Mode mo
   out.grain_step = out.seconds * drops / grain_steps;
   engine->step(2 * kSamples * steps);
   const dem::Snapshot end = engine->snapshot();
-  out.level = dem::measure_relaxation(end, end, d).levels_before;
+  out.level = grainfield::coupling::measure_relaxation(end, end, d).levels_before;
   return out;
 }
 

@@ -4,6 +4,7 @@
 
 #include "continuum/fe/wedge.h"
 #include "continuum/model.h"
+#include "tests/continuum/refused_model.h"
 
 namespace grainfield::continuum {
 
@@ -24,12 +25,7 @@ inline std::string failure(const WedgeProblem& p) {
 }
 
 inline std::string refusal(const Settings& settings) {
-  try {
-    make_model("fe_mohr_coulomb_wedge", settings);
-  } catch (const BadParameter& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal("fe_mohr_coulomb_wedge", settings);
 }
 
 }  // namespace grainfield::continuum

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/refusal.h"
+
 namespace grainfield::coupling {
 
 inline Eigen::VectorXd axis(int n, double reach) {
@@ -13,15 +15,6 @@ inline Eigen::VectorXd axis(int n, double reach) {
 
 inline Eigen::VectorXd bell(const Eigen::VectorXd& x, double at, double width, double height) {
   return height * (-((x.array() - at) / width).square() / 2).exp();
-}
-
-inline std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "nothing thrown";
 }
 
 }  // namespace grainfield::coupling

@@ -8,18 +8,9 @@
 #include "coupling/averaging/average.h"
 #include "coupling/elastic_constants/increments.h"
 #include "dem/random/random.h"
+#include "tests/refusal.h"
 
 namespace grainfield::test {
-
-inline std::string refusal_text(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "";
-}
-
 inline double standard_normal(dem::Random& random) {
   const double u = 1 - random.uniform(), v = random.uniform();
   return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v);

@@ -77,7 +77,7 @@ class Mercury : public MatrixRows {
     std::size_t copies = s_.grains.size();
     std::string fstat = "# 0.5 1\n# 0 0 0 1 1 1\n# 0 0 0 0 0 0\n";
     for (const Pair& p : pairs(true)) {
-      // Of a pair the force is fn n + ft t and n points to i; of a wall both are turned.
+      // The force of a pair is fn n + ft t and n points to i; of a wall both are turned.
       const double turned = p.j < 0 ? -1 : 1;
       const Vec3 normal = -p.normal;
       const double fn = p.force.dot(normal);

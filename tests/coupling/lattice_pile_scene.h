@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "coupling/studies/lattice_pile/simulation.h"
-#include "dem/packing/lattice_pile.h"
+#include "dem/grains/lattice_pile.h"
 #include "dem/run/run.h"
 
 namespace grainfield::dem {

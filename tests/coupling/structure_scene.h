@@ -8,18 +8,9 @@
 #include <vector>
 
 #include "averaging_scene.h"
+#include "tests/refusal.h"
 
 namespace grainfield::test {
-
-// The message of the refusal, if any.
-inline std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "nothing was refused";
-}
 
 // Contact of two grains with a force of size f that presses them together.
 inline void press(dem::Snapshot& s, std::int64_t i, std::int64_t j, double f) {

@@ -76,7 +76,7 @@ struct Scene {
   std::vector<std::pair<long, std::function<void(Engine&)>>> events;
 };
 
-/// The end state. `cut`: step at which the engine is written as an image and another one, on
+/// The end state. `cut`: step at which the engine is written as a checkpoint and another one, on
 /// `threads_after` threads, goes on from it; -1: never.
 inline Snapshot end_of(const Scene& scene, int threads, long cut = -1, int threads_after = 1) {
   EngineSettings settings = scene.settings;
@@ -91,10 +91,10 @@ inline Snapshot end_of(const Scene& scene, int threads, long cut = -1, int threa
   const auto step_to = [&](long step) {
     if (cut > engine->steps() && cut <= step) {
       engine->step(cut - engine->steps());
-      const std::string image = engine->image();
+      const std::string checkpoint = engine->checkpoint();
       settings.threads = threads_after;
       engine = box();
-      engine->restore(image);
+      engine->restore(checkpoint);
     }
     engine->step(step - engine->steps());
   };

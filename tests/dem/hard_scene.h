@@ -2,8 +2,8 @@
 #pragma once
 #include <numbers>
 
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/collisions/hard_engine.h"
-#include "dem/image/image.h"
 #include "dem/random/random.h"
 
 namespace grainfield::dem::testing {

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <vector>
 
+#include "dem/grains/lattice_pile.h"
 #include "dem/implicit/soft_disks.h"
-#include "dem/packing/lattice_pile.h"
 
 namespace grainfield::dem::testing {
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
+#include "dem/grains/packing.h"
 #include "dem/laws/material_setup.h"
-#include "dem/packing/packing.h"
 #include "dem/random/random.h"
 #include "dem/shapes/polygon.h"
 

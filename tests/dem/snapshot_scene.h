@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "dem/image/image.h"
+#include "dem/checkpoint/checkpoint.h"
 #include "dem/random/random.h"
 #include "dem/snapshot/snapshot.h"
 
@@ -139,13 +139,13 @@ void visit_values(const Snapshot& s, Each each) {
   for (const auto& [key, value] : s.attributes) all(key, value);
 }
 
-inline void put_bits(const Snapshot& s, ImageWriter& w) {
+inline void put_bits(const Snapshot& s, CheckpointWriter& w) {
   visit_values(s, [&](const auto& value) { w.put(value); });
 }
 
 /// All snapshots of a file with their names.
 inline std::string bits_of_file(const std::string& file) {
-  ImageWriter w;
+  CheckpointWriter w;
   for (const std::string& group : list_snapshots(file)) {
     w.put(group);
     put_bits(read_snapshot(file, group), w);

@@ -9,8 +9,8 @@
 #include "coupling/app/terminal.h"
 #include "coupling/import/import.h"
 #include "coupling/import/packing_warnings.h"
+#include "dem/shared/number.h"
 #include "dem/snapshot/check_snapshot.h"
-#include "dem/snapshot/number.h"
 #include "dem/snapshot/table_file.h"
 #include "tests/fuzz/target.h"
 
@@ -25,7 +25,7 @@ void choose(const std::string& line, coupling::ImportOptions& options) {
   if (name == "column") options.columns.push_back(value);
   if (name == "periodic") options.periodic.push_back(coupling::parse_periodic(value));
   if (name == "dim") options.dim = value == "3" ? 3 : 2;
-  if (name == "density") options.density = dem::parse_number(value).value_or(0);
+  if (name == "density") options.density = parse_number(value).value_or(0);
   if (name == "fixed") {
     const std::size_t equals = std::min(value.find('='), value.size());
     options.fixed_column = value.substr(0, equals);

@@ -69,7 +69,7 @@ InputFile::InputFile(std::string_view bytes)
   }
   if (descriptor >= 0) close(descriptor);
   if (descriptor < 0 || written < bytes.size()) throw std::runtime_error("no temporary file");
-  // The look ahead at an HDF5 file takes place once for one that is not young (hdf5_probe.h).
+  // The look ahead at an HDF5 file takes place once for one that is not young (trial_read.h).
   const auto now = std::filesystem::file_time_type::clock::now();
   std::filesystem::last_write_time(path_, now - std::chrono::hours(1));
 }

@@ -12,10 +12,10 @@
 #include "coupling/averaging/base.h"
 #include "coupling/averaging/base_space.h"
 #include "coupling/averaging/rings.h"
-#include "coupling/heap/cone_windows.h"
-#include "coupling/heap/scaled.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/comparison_page.h"
+#include "coupling/specimen/cone_windows.h"
+#include "coupling/specimen/scaled.h"
 #include "coupling/studies/cone/figures.h"
 #include "coupling/studies/cone/simulation.h"
 #include "coupling/studies/pile/figures.h"
@@ -38,7 +38,7 @@ constexpr double kBalanceLow = -0.8, kBalanceHigh = -0.6;
 // An averaging that is wider, over the height, and a larger share of grains lost are warned of.
 constexpr double kWideKernel = 0.25, kManyLost = 0.05;
 
-// Of those sectors that have a slope; nan where half of them have none.
+// The deviation of those sectors that have a slope; nan where half of them have none.
 double deviation(const std::array<double, kConeSectors>& values) {
   std::vector<double> known;
   for (const double v : values) {

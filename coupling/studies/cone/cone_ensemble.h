@@ -8,10 +8,10 @@
 
 #include "coupling/averaging/cone.h"
 #include "coupling/case/case.h"
-#include "coupling/heap/dip.h"
 #include "coupling/observe/method_averages.h"
 #include "coupling/observe/seen_models.h"
 #include "coupling/run/realization_file.h"
+#include "coupling/specimen/dip.h"
 
 namespace grainfield::coupling {
 

@@ -8,9 +8,10 @@
 #include <stdexcept>
 
 #include "coupling/studies/sample/simulation/grains.h"
-#include "dem/heap/reach.h"
+#include "dem/grains/reach.h"
 #include "dem/run/common.h"
 #include "dem/run/softness.h"
+#include "dem/shared/refuse.h"
 
 namespace grainfield::dem {
 namespace {
@@ -25,10 +26,6 @@ constexpr double kHighFall = 40;
 constexpr double kMostCells = 1000;
 // A grain or a wall passes less than this share of the least radius in a step.
 constexpr double kMostWay = 0.25;
-
-[[noreturn]] void refuse(const char* key, const std::string& text) {
-  throw std::invalid_argument(fmt::format("cone.{}: {}", key, text));
-}
 
 bool is_sphere(const ConePlan& plan) { return plan.shape == "sphere"; }
 
@@ -95,7 +92,7 @@ double expected_height(const ConePlan& p) {
   return std::cbrt(3 * kHeapSlope * kHeapSlope * volume / std::numbers::pi);
 }
 
-// Of a grain that falls onto the heap, m/s.
+// The speed of a grain that falls onto the heap, m/s.
 double meeting_speed(const ConeSetup& s) {
   const double fall = s.plan.drop + kColumn * sample_radii(as_sample(s.plan)).most;
   return std::sqrt(s.plan.speed * s.plan.speed + 2 * s.material.gravity * fall);
@@ -103,7 +100,8 @@ double meeting_speed(const ConeSetup& s) {
 
 void check_order(const char* less, double least, const char* more, double most) {
   if (least <= most) return;
-  refuse(less, fmt::format("found {:g}, allowed: up to cone.{} = {:g}", least, more, most));
+  refuse(std::string("cone.") + less,
+         fmt::format("found {:g}, allowed: up to cone.{} = {:g}", least, more, most));
 }
 
 }  // namespace
@@ -122,7 +120,7 @@ void check_cone(const ConeSetup& s) {
   }
   if (!is_sphere(p)) {
     if (p.source == "cylinder") {
-      refuse("source",
+      refuse("cone.source",
              "found cylinder, allowed with cone.shape = superellipsoid: point | rain (walls of "
              "superellipsoids are planes)");
     }
@@ -130,14 +128,15 @@ void check_cone(const ConeSetup& s) {
     check_order("axis_min", p.axis_min, "axis_max", p.axis_max);
     check_order("exponent_min", p.exponent_min, "exponent_max", p.exponent_max);
   }
-  // Of grains that start higher or faster than any need to, the speed itself is to blame.
+  // The speed itself is to blame where grains start higher or faster than any need to.
   const double height = expected_height(p), fall = height + kHighFall * p.radius;
   const double usual = std::sqrt(2 * s.material.gravity * fall);
   check_stiff_enough(s.material, {p.radius, height, std::min(usual, meeting_speed(s))});
   const double most = sample_radii(as_sample(p)).most;
   const auto at_least = [&](const char* key, double found, double least, const char* why) {
     if (found >= least) return;
-    refuse(key, fmt::format("found {:g}, allowed: at least {:.4g} m, {}", found, least, why));
+    refuse(std::string("cone.") + key,
+           fmt::format("found {:g}, allowed: at least {:.4g} m, {}", found, least, why));
   };
   const bool cylinder = p.source == "cylinder";
   if (p.source != "rain") {
@@ -149,7 +148,7 @@ void check_cone(const ConeSetup& s) {
   at_least("drop", p.drop, 2 * most, "twice the largest radius");
   const double fixed = floor_grains_of(p);
   if (fixed > kMostGrains) {
-    refuse("floor_radius",
+    refuse("cone.floor_radius",
            fmt::format("found {:g}, allowed: up to {:.3g} m with grains of this "
                        "size on a rough floor: ten million grains",
                        p.floor_radius, p.floor_radius * std::sqrt(kMostGrains / fixed)));
@@ -186,9 +185,10 @@ EngineSettings cone_settings(const ConeSetup& s, const std::vector<ShapedGrain>&
   const double most = kMostWay * sample_radii(as_sample(p)).least / out.time_step;
   const auto check_speed = [&](const char* key, double found, double speed) {
     if (speed <= most) return;
-    refuse(key, fmt::format("found {:g}, allowed: so that nothing moves at more than {:.3g} m/s, a "
-                            "quarter of the least radius in a step of {:.3g} s",
-                            found, most, out.time_step));
+    refuse(std::string("cone.") + key,
+           fmt::format("found {:g}, allowed: so that nothing moves at more than {:.3g} m/s, a "
+                       "quarter of the least radius in a step of {:.3g} s",
+                       found, most, out.time_step));
   };
   if (p.source == "cylinder") check_speed("lift_speed", p.lift_speed, p.lift_speed);
   check_speed("speed", p.speed, p.speed);
@@ -262,7 +262,7 @@ NewGrain placed_grain(const ShapedGrain& grain, double x, double y, double z, do
 
 double resting_height(const Snapshot& s) {
   double top = 0;
-  for (const Grain* g : lying_grains(s)) top = std::max(top, top_in_space(*g));
+  for (const Grain* g : lying_grains(s)) top = std::max(top, top_3d(*g));
   return top;
 }
 
@@ -270,7 +270,7 @@ double top_within(const Snapshot& s, double radius) {
   double top = 0;
   for (const Grain& g : s.grains) {
     if (!g.fixed && g.position.head<2>().norm() < radius) {
-      top = std::max(top, top_in_space(g));
+      top = std::max(top, top_3d(g));
     }
   }
   return top;
@@ -284,7 +284,7 @@ LocalTops::LocalTops(const Snapshot& s, double half, double cell)
   for (const Grain* g : lying_grains(s)) {
     double& top = top_[static_cast<std::size_t>(cell_of(g->position.y()) * count_ +
                                                 cell_of(g->position.x()))];
-    top = std::max(top, top_in_space(*g));
+    top = std::max(top, top_3d(*g));
   }
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "coupling/studies/cone/simulation.h"
-#include "dem/heap/grain_family.h"
+#include "dem/grains/grain_family.h"
 #include "dem/random/random.h"
 
 namespace grainfield::dem {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "coupling/averaging/cone.h"
-#include "coupling/heap/cone_windows.h"
 #include "coupling/result/figure.h"
+#include "coupling/specimen/cone_windows.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

@@ -354,7 +354,7 @@ Outlook foresee_cone(const ConeSetup& s, const std::vector<std::uint64_t>& seeds
     const std::unique_ptr<Engine> engine = make_engine(settings);
     for (const Wall& wall : cone_walls(s, p.source == "cylinder")) engine->add_wall(wall);
   };
-  // Of spheres the extremes are known; superellipsoids are drawn, as many as allowed.
+  // The extremes of spheres are known; superellipsoids are drawn, as many as allowed.
   if (p.shape == "sphere") {
     judge({}, 1);
   } else {

@@ -10,7 +10,6 @@
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/base.h"
-#include "coupling/heap/cone_windows.h"
 #include "coupling/models/subject.h"
 #include "coupling/observe/seen_models.h"
 #include "coupling/run/averaging_setup.h"
@@ -19,6 +18,7 @@
 #include "coupling/run/grain_keys.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/specimen/cone_windows.h"
 #include "coupling/studies/cone/cone_ensemble.h"
 #include "coupling/studies/cone/cone_file.h"
 #include "coupling/studies/cone/figures.h"

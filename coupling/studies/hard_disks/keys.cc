@@ -4,7 +4,7 @@
 #include "coupling/case/declare.h"
 #include "coupling/studies/hard_disks/simulation.h"
 
-#define IN(MEMBER) GRAINFIELD_MEMBER(dem::HardDisksSetup, MEMBER)
+#define IN(MEMBER) GRAINFIELD_MEMBER(dem::HardParticlesSetup, MEMBER)
 
 namespace grainfield::coupling {
 

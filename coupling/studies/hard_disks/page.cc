@@ -14,12 +14,12 @@ namespace {
 
 constexpr int kSmooth = 121;  // points of a line that is known everywhere
 
-const char* theory_name(const dem::HardDisksSetup& s) {
-  return s.in_space() ? "Carnahan and Starling" : "Henderson";
+const char* theory_name(const dem::HardParticlesSetup& s) {
+  return s.is_3d() ? "Carnahan and Starling" : "Henderson";
 }
 
-const char* fraction_name(const dem::HardDisksSetup& s) {
-  return s.in_space() ? "volume fraction" : "area fraction";
+const char* fraction_name(const dem::HardParticlesSetup& s) {
+  return s.is_3d() ? "volume fraction" : "area fraction";
 }
 
 double haff(double time) { return 1 / ((1 + time) * (1 + time)); }
@@ -135,13 +135,12 @@ std::string shown(const GasValue& v) { return with_error(v.mean, v.error); }
 
 }  // namespace
 
-double gas_theory(const dem::HardDisksSetup& s, double fraction) {
-  return s.in_space() ? dem::gas_compressibility<3>(fraction)
-                      : dem::gas_compressibility<2>(fraction);
+double gas_theory(const dem::HardParticlesSetup& s, double fraction) {
+  return s.is_3d() ? dem::gas_compressibility<3>(fraction) : dem::gas_compressibility<2>(fraction);
 }
 
-double gas_series(const dem::HardDisksSetup& s, double fraction) {
-  return s.in_space() ? dem::gas_virial_series<3>(fraction) : dem::gas_virial_series<2>(fraction);
+double gas_series(const dem::HardParticlesSetup& s, double fraction) {
+  return s.is_3d() ? dem::gas_virial_series<3>(fraction) : dem::gas_virial_series<2>(fraction);
 }
 
 std::vector<Chart> gas_charts(const GasResults& results) {
@@ -238,7 +237,7 @@ std::string gas_sentence(const GasResults& results) {
       results.setup.cool_to, most);
 }
 
-std::string gas_subtitle(const dem::HardDisksSetup& s) {
+std::string gas_subtitle(const dem::HardParticlesSetup& s) {
   const std::string what = s.kind == "pressure" ? "without loss"
                                                 : fmt::format("restitution {:g}, friction {:g}",
                                                               s.restitution, s.friction);

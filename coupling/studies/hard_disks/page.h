@@ -11,9 +11,9 @@
 namespace grainfield::coupling {
 
 /// Of a fraction: Henderson's, or Carnahan and Starling's.
-double gas_theory(const dem::HardDisksSetup& setup, double fraction);
+double gas_theory(const dem::HardParticlesSetup& setup, double fraction);
 /// And the virial series.
-double gas_series(const dem::HardDisksSetup& setup, double fraction);
+double gas_series(const dem::HardParticlesSetup& setup, double fraction);
 
 /// Mean over the realizations with its standard error (nan: one realization alone).
 struct GasValue {
@@ -31,7 +31,7 @@ struct GasState {
 };
 
 struct GasResults {
-  dem::HardDisksSetup setup;
+  dem::HardParticlesSetup setup;
   std::vector<GasState> states;
 };
 
@@ -42,7 +42,7 @@ Table gas_table(const GasResults& results);
 std::string gas_csv(const GasResults& results);
 /// The answer in a sentence.
 std::string gas_sentence(const GasResults& results);
-std::string gas_subtitle(const dem::HardDisksSetup& setup);
+std::string gas_subtitle(const dem::HardParticlesSetup& setup);
 
 /// Of all fractions (and times) |value over theory - 1| at most; 0 where there is no theory.
 double gas_largest_difference(const GasResults& results);

@@ -14,13 +14,13 @@
 namespace grainfield::dem {
 namespace {
 
-// Of a grain with its plans, entries of the heap and cells: about. Snapshots come beside it.
+// Bytes of a grain with its plans, entries of the heap and cells, about. Snapshots come beside it.
 constexpr double kBytesPerGrain = 500;
 // The box's side over the radius, at least: no pair meets by two images.
 constexpr double kLeastSide = 6.01;
 
 template <int D>
-GasSetup gas_of(const HardDisksSetup& s, double fraction) {
+GasSetup gas_of(const HardParticlesSetup& s, double fraction) {
   GasSetup out;
   out.grains = s.grains;
   out.fraction = fraction;
@@ -35,9 +35,9 @@ struct CoolingRecord {
 };
 
 template <int D>
-class HardDisksRun final : public ArchivedRun {
+class HardParticlesRun final : public ArchivedRun {
  public:
-  HardDisksRun(const HardDisksSetup& setup, std::uint64_t seed)
+  HardParticlesRun(const HardParticlesSetup& setup, std::uint64_t seed)
       : setup_(setup), seed_(seed), random_(seed) {
     begin();
   }
@@ -316,7 +316,7 @@ class HardDisksRun final : public ArchivedRun {
     }
   }
 
-  HardDisksSetup setup_;
+  HardParticlesSetup setup_;
   std::uint64_t seed_;
   Random random_;
   std::size_t at_ = 0;  // of the fractions
@@ -332,7 +332,7 @@ class HardDisksRun final : public ArchivedRun {
 };
 
 template <int D>
-void check_fractions(const HardDisksSetup& s) {
+void check_fractions(const HardParticlesSetup& s) {
   const double most = largest_fraction<D>(s.grains, s.radius);
   for (const double f : s.fractions) {
     if (f <= most) continue;
@@ -351,15 +351,15 @@ void check_fractions(const HardDisksSetup& s) {
   }
 }
 
-void check_hard_disks(const HardDisksSetup& s) {
+void check_hard_particles(const HardParticlesSetup& s) {
   if (s.kind == "cooling" && s.restitution == 1) {
     throw std::invalid_argument(
         "gas.restitution: found 1 with gas.kind \"cooling\", allowed: below 1");
   }
-  s.in_space() ? check_fractions<3>(s) : check_fractions<2>(s);
+  s.is_3d() ? check_fractions<3>(s) : check_fractions<2>(s);
   if (s.kind == "cooling") {
     // A collision takes (1 - e^2)/(2 D) of the two grains' energy.
-    const double each = 2 * (s.in_space() ? 3 : 2) * std::log(1 / std::sqrt(s.cool_to)) /
+    const double each = 2 * (s.is_3d() ? 3 : 2) * std::log(1 / std::sqrt(s.cool_to)) /
                         (1 - s.restitution * s.restitution);
     const double all = 0.5 * s.grains * static_cast<double>(s.fractions.size()) * each;
     if (all > kMostSteps) {
@@ -383,14 +383,14 @@ void check_hard_disks(const HardDisksSetup& s) {
 
 std::string name_of_fraction(double fraction) { return fmt::format("fraction_{:g}", fraction); }
 
-std::unique_ptr<Run> make_hard_disks_run(const HardDisksSetup& setup, std::uint64_t seed) {
-  check_hard_disks(setup);
-  if (setup.in_space()) return std::make_unique<HardDisksRun<3>>(setup, seed);
-  return std::make_unique<HardDisksRun<2>>(setup, seed);
+std::unique_ptr<Run> make_hard_particles_run(const HardParticlesSetup& setup, std::uint64_t seed) {
+  check_hard_particles(setup);
+  if (setup.is_3d()) return std::make_unique<HardParticlesRun<3>>(setup, seed);
+  return std::make_unique<HardParticlesRun<2>>(setup, seed);
 }
 
-Outlook foresee_hard_disks(const HardDisksSetup& setup) {
-  check_hard_disks(setup);
+Outlook foresee_hard_particles(const HardParticlesSetup& setup) {
+  check_hard_particles(setup);
   Outlook out;
   out.grains = setup.grains;
   const double snapshots = static_cast<double>(setup.fractions.size() * sizeof(Grain));

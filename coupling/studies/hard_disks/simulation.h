@@ -12,7 +12,7 @@ namespace grainfield::dem {
 
 /// For every fraction in turn: grains on a lattice with velocities that are drawn collide without
 /// loss until they are mixed; then the pressure is measured, or they lose energy and cool.
-struct HardDisksSetup {
+struct HardParticlesSetup {
   std::string shape = "disk";     ///< disk | sphere
   std::string kind = "pressure";  ///< pressure | cooling
   int grains = 10000;
@@ -32,7 +32,7 @@ struct HardDisksSetup {
     return std::tie(shape, kind, grains, radius, density, speed, fractions, equilibration,
                     collisions, restitution, friction, contact_time, cool_to, records);
   }
-  bool in_space() const { return shape == "sphere"; }
+  bool is_3d() const { return shape == "sphere"; }
 };
 
 /// Columns of a cooling gas: table "gas" of each snapshot, pure numbers. time:
@@ -45,8 +45,8 @@ inline constexpr const char* kCoolingColumns[] = {"time", "temperature", "spin_t
 std::string name_of_fraction(double fraction);
 
 /// Throws std::invalid_argument naming the key.
-std::unique_ptr<Run> make_hard_disks_run(const HardDisksSetup& setup, std::uint64_t seed);
+std::unique_ptr<Run> make_hard_particles_run(const HardParticlesSetup& setup, std::uint64_t seed);
 /// The same refusals.
-Outlook foresee_hard_disks(const HardDisksSetup& setup);
+Outlook foresee_hard_particles(const HardParticlesSetup& setup);
 
 }  // namespace grainfield::dem

@@ -42,7 +42,7 @@ class GasAnalysis {
  public:
   GasAnalysis(const Case& value, const std::vector<std::string>& files)
       : value_(value), files_(files) {
-    results_.setup = value.get<dem::HardDisksSetup>();
+    results_.setup = value.get<dem::HardParticlesSetup>();
     for (const std::string& file : files) {
       realizations_.push_back(read_realization(file));
     }
@@ -122,7 +122,7 @@ class GasAnalysis {
       const std::string caption =
           fmt::format("Grains of the first realization in their periodic box, at {:g}.",
                       results.setup.fractions.back());
-      Picture grains = results.setup.in_space()
+      Picture grains = results.setup.is_3d()
                            ? slice("At the end", *snapshot)
                            : marked_grains("At the end", *snapshot,
                                            std::vector<char>(snapshot->grains.size(), 1), caption);
@@ -152,14 +152,14 @@ Study hard_disks_study() {
   out.without = {"compare.models", "output.fields"};
   out.models_optional = true;
   out.make_run = [](const Case& value, std::int64_t number, int /*threads*/) {
-    return dem::make_hard_disks_run(value.get<dem::HardDisksSetup>(),
-                                    realization_seed(value, number));
+    return dem::make_hard_particles_run(value.get<dem::HardParticlesSetup>(),
+                                        realization_seed(value, number));
   };
   out.foresee = [](const Case& value, std::int64_t /*draws*/) {
-    return dem::foresee_hard_disks(value.get<dem::HardDisksSetup>());
+    return dem::foresee_hard_particles(value.get<dem::HardParticlesSetup>());
   };
   out.dimension = [](const Case& value) {
-    return value.get<dem::HardDisksSetup>().in_space() ? 3 : 2;
+    return value.get<dem::HardParticlesSetup>().is_3d() ? 3 : 2;
   };
   out.dimension_key = "gas.shape";
   out.analyse = [](const Case& value, const std::vector<std::string>& files, int /*threads*/) {

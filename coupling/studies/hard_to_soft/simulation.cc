@@ -212,8 +212,8 @@ class HardToSoftRun final : public ArchivedRun {
     return fmt::format("hard to soft {} {}", fingerprint_of(setup_), seed_);
   }
   void visit(Archive& archive) override {
-    std::string image = archive.is_reading() ? std::string() : disks_.image();
-    archive(image);
+    std::string checkpoint = archive.is_reading() ? std::string() : disks_.checkpoint();
+    archive(checkpoint);
     archive(records_);
     archive(at_rest_);
     archive(done_);
@@ -221,7 +221,7 @@ class HardToSoftRun final : public ArchivedRun {
       archive.snapshot(shown_[k], fmt::format("soft_{}", kShown[k]));
     }
     archive.require(!records_.empty());
-    if (archive.is_reading()) disks_.restore(image);
+    if (archive.is_reading()) disks_.restore(checkpoint);
   }
 
   HardToSoftSetup setup_;

@@ -32,7 +32,7 @@ namespace {
 
 // Rest is judged every so many steps.
 constexpr long kJudgeEvery = 20;
-// Of a disk with its contacts and their part of the factors: about.
+// Bytes of a disk with its contacts and their part of the factors, about.
 constexpr double kBytesOfSoftDisk = 8000;
 // A contact whose normal rises less than this is one of a row.
 constexpr double kRise = 0.5;
@@ -209,15 +209,15 @@ class ImplicitSettlingRun final : public ArchivedRun {
     return fmt::format("implicit settling {} {}", fingerprint_of(setup_), seed_);
   }
   void visit(Archive& archive) override {
-    std::string image = archive.is_reading() ? std::string() : disks_.image();
-    archive(image);
+    std::string checkpoint = archive.is_reading() ? std::string() : disks_.checkpoint();
+    archive(checkpoint);
     archive(records_);
     archive(solves_);
     archive(iterations_);
     archive(at_rest_);
     archive(done_);
     archive.require(!records_.empty());
-    if (archive.is_reading()) disks_.restore(image);
+    if (archive.is_reading()) disks_.restore(checkpoint);
   }
 
   ImplicitSettlingSetup setup_;

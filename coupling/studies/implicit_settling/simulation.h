@@ -4,7 +4,7 @@
 #include <string>
 #include <tuple>
 
-#include "dem/packing/lattice_pile.h"
+#include "dem/grains/lattice_pile.h"
 #include "dem/run/outlook.h"
 #include "dem/run/run.h"
 

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <optional>
 
-#include "dem/heap/grain_family.h"
-#include "dem/packing/lattice_pile.h"
+#include "dem/grains/grain_family.h"
+#include "dem/grains/lattice_pile.h"
 #include "dem/run/fingerprint.h"
 #include "dem/run/phases.h"
 #include "dem/snapshot/contact_changes.h"

@@ -4,9 +4,9 @@
 #include <memory>
 #include <tuple>
 
+#include "dem/grains/lattice_pile.h"
 #include "dem/laws/material_setup.h"
 #include "dem/motion/motion_setup.h"
-#include "dem/packing/lattice_pile.h"
 #include "dem/run/outlook.h"
 #include "dem/run/run.h"
 #include "dem/run/setup.h"

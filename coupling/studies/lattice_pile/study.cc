@@ -20,7 +20,7 @@
 #include "coupling/studies/lattice_pile/keys.h"
 #include "coupling/studies/lattice_pile/page.h"
 #include "coupling/studies/lattice_pile/simulation.h"
-#include "dem/packing/lattice_pile.h"
+#include "dem/grains/lattice_pile.h"
 #include "dem/run/setup.h"
 
 namespace grainfield::coupling {

@@ -29,7 +29,7 @@ struct PairScales {
 PairScales scales_of(const dem::PairSetup& s) {
   const auto mass = [&](double r) {
     const double pi = std::numbers::pi;
-    return s.material.density * (s.in_space() ? 4.0 / 3 * pi * r * r * r : pi * r * r);
+    return s.material.density * (s.is_3d() ? 4.0 / 3 * pi * r * r * r : pi * r * r);
   };
   const double a = s.radius, b = s.radius_second > 0 ? s.radius_second : a;
   if (s.partner == "wall") return {mass(a), a};
@@ -69,7 +69,7 @@ double peak_of_dashpot(double share) {
   return w > 0 ? std::exp(-share / w * std::atanh(w / share)) : std::exp(-1.0);
 }
 
-double slip_ratio(const dem::PairSetup& s) { return s.in_space() ? 3.5 : 3; }  // m/m_t
+double slip_ratio(const dem::PairSetup& s) { return s.is_3d() ? 3.5 : 3; }  // m/m_t
 
 // Linear law without dashpots.
 double elastic_slip(const dem::PairSetup& s, double angle_deg) {

@@ -8,9 +8,10 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "dem/heap/grain_family.h"
+#include "dem/grains/grain_family.h"
 #include "dem/motion/motion_setup.h"
 #include "dem/run/common.h"
+#include "dem/shared/refuse.h"
 #include "dem/space/rotation.h"
 
 namespace grainfield::dem {
@@ -22,7 +23,7 @@ constexpr int kHalvings = 200;  // of the bracket: down to neighbouring numbers
 
 ShapeSetup shape_of(const PairSetup& s, double radius) {
   ShapeSetup out;
-  out.kind = s.in_space() ? "disk" : s.shape;
+  out.kind = s.is_3d() ? "disk" : s.shape;
   out.radius = radius;
   out.polydispersity = 0;
   out.corners_min = out.corners_max = s.corners;
@@ -47,12 +48,7 @@ void set_spin(const std::vector<double>& spin, bool in_space, NewGrain& g) {
 
 double mass_of(const PairSetup& s, const ShapedGrain& g) {
   const double r = g.radius;
-  return s.material.density * (s.in_space() ? 4.0 / 3 * std::numbers::pi * r * r * r : g.area);
-}
-
-[[noreturn]] void refuse(const std::string& key, const std::string& found,
-                         const std::string& allowed) {
-  throw std::invalid_argument(fmt::format("{}: found {}, allowed: {}", key, found, allowed));
+  return s.material.density * (s.is_3d() ? 4.0 / 3 * std::numbers::pi * r * r * r : g.area);
 }
 
 void check_spin(const char* key, const std::vector<double>& spin, bool in_space) {
@@ -93,12 +89,12 @@ void check_pair(const PairSetup& s) {
   if (s.kind == "collision" && !(s.speed > 0)) {
     refuse("pair.speed", fmt::format("{:g} with pair.kind \"collision\"", s.speed), "above 0");
   }
-  check_spin("pair.spin_first", s.spin_first, s.in_space());
-  check_spin("pair.spin_second", s.spin_second, s.in_space());
+  check_spin("pair.spin_first", s.spin_first, s.is_3d());
+  check_spin("pair.spin_second", s.spin_second, s.is_3d());
   if (s.partner == "wall" && !s.spin_second.empty()) {
     refuse("pair.spin_second", "a spin", "none for a wall");
   }
-  if (!s.in_space()) {
+  if (!s.is_3d()) {
     const auto plane = laws_in<2>();
     if (std::find(plane.begin(), plane.end(), s.material.law) == plane.end()) {
       refuse("material.law", fmt::format("\"{}\"", s.material.law),
@@ -133,8 +129,8 @@ PairBodies make_pair(const PairSetup& s, Random& random, int threads) {
   const ShapedGrain b = draw(s, other, s.turned_second, random);
   out.first = a.at(0, 0, s.material.density);
   out.second = b.at(0, 0, s.material.density);
-  set_spin(s.spin_first, s.in_space(), out.first);
-  set_spin(s.spin_second, s.in_space(), out.second);
+  set_spin(s.spin_first, s.is_3d(), out.first);
+  set_spin(s.spin_second, s.is_3d(), out.second);
   out.has_wall = s.partner == "wall";
   out.wall = {"wall", Vec3(0, 0, 0), Vec3(-1, 0, 0), s.material.friction};
   const double mass = mass_of(s, a), mass_b = mass_of(s, b);
@@ -146,7 +142,7 @@ PairBodies make_pair(const PairSetup& s, Random& random, int threads) {
   e.rolling = RollingLaw::of(s.material);
   e.local_damping = s.motion.local_damping;
   if (s.kind == "collision") e.integrator = IntegratorKind::named(s.motion.integrator);
-  e.shape = s.in_space()        ? ShapeKind::sphere
+  e.shape = s.is_3d()           ? ShapeKind::sphere
             : s.shape == "disk" ? ShapeKind::disk
                                 : ShapeKind::polygon;
   check_integrator(e);
@@ -163,9 +159,9 @@ PairBodies make_pair(const PairSetup& s, Random& random, int threads) {
   return out;
 }
 
-std::unique_ptr<PairProbe> PairBodies::probe() const {
-  return has_wall ? make_pair_probe(settings, first, wall)
-                  : make_pair_probe(settings, first, second);
+std::unique_ptr<PairContact> PairBodies::contact() const {
+  return has_wall ? make_pair_contact(settings, first, wall)
+                  : make_pair_contact(settings, first, second);
 }
 
 std::unique_ptr<Engine> PairBodies::empty_engine() const {
@@ -205,11 +201,11 @@ PairState PairBodies::state_of_second() const {
 }
 
 PairPose touching_pose(const PairBodies& bodies, double offset) {
-  const std::unique_ptr<PairProbe> probe = bodies.probe();
+  const std::unique_ptr<PairContact> contact = bodies.contact();
   const PairState second = bodies.state_of_second();
   const auto touch = [&](double x) {
-    probe->forget();
-    return probe->at(bodies.state_of_first({x, offset, 0}), second, 0).touching;
+    contact->forget();
+    return contact->at(bodies.state_of_first({x, offset, 0}), second, 0).touching;
   };
   const double reach = bodies.first.radius + (bodies.has_wall ? 0 : bodies.second.radius);
   double apart = -1.001 * reach, inside = apart;

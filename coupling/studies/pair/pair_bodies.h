@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "coupling/studies/pair/simulation.h"
-#include "dem/engine/pair_probe.h"
+#include "dem/engine/pair_contact.h"
 #include "dem/random/random.h"
 
 namespace grainfield::dem {
@@ -23,7 +23,7 @@ struct PairBodies {
   double stable_step = 0;  ///< s (engine.h: stable_time_step)
   double pair_mass = 0;    ///< m_i m_j/(m_i + m_j), kg
 
-  std::unique_ptr<PairProbe> probe() const;
+  std::unique_ptr<PairContact> contact() const;
   /// An engine with both, and the first moving like this.
   std::unique_ptr<Engine> engine(const PairState& first) const;
   /// An engine without grains, to restore one.

@@ -49,7 +49,7 @@ PairState start_of(const PairBodies& bodies, const PairPose& pose, const PairLau
 /// Normal and lever arms where they touch.
 Touch touch_of(const PairBodies& bodies, const PairState& first) {
   const PairState second = bodies.state_of_second();
-  const PairForces f = bodies.probe()->at(first, second, 0);
+  const PairForces f = bodies.contact()->at(first, second, 0);
   Touch out;
   out.normal = f.normal;
   out.arm_first = f.point - first.position;
@@ -107,7 +107,7 @@ class CollisionRun final : public PairRun {
       check_approach(bodies_, pose_, launch);
       check_way(bodies_, launch);
     }
-    geometry_ = bodies_.probe();
+    geometry_ = bodies_.contact();
     const double stiffness = std::visit(
         [&](const auto& law) { return law.stiffness(bodies_.first.radius); }, bodies_.settings.law);
     longest_ = kLongest * std::numbers::pi * std::sqrt(bodies_.pair_mass / stiffness);
@@ -261,7 +261,7 @@ class CollisionRun final : public PairRun {
   PairBodies bodies_;
   std::vector<PairLaunch> launches_;
   PairPose pose_;
-  std::unique_ptr<PairProbe> geometry_;
+  std::unique_ptr<PairContact> geometry_;
   std::unique_ptr<Engine> engine_;
   double longest_ = 0, kinetic_ = 0, last_force_ = 0, before_last_ = 0;
   PairState before_first_, before_second_;

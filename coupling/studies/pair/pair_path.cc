@@ -32,7 +32,7 @@ PairPath::PairPath(const PairSetup& s, const PairBodies& bodies)
   if (kind_ != Kind::waypoints) start_.x += depth_;
   if (kind_ == Kind::roll) {
     const PairForces f =
-        bodies.probe()->at(bodies.state_of_first(start_), bodies.state_of_second(), 0);
+        bodies.contact()->at(bodies.state_of_first(start_), bodies.state_of_second(), 0);
     arm_ = f.touching ? std::hypot(f.point.x() - start_.x, f.point.y() - start_.y) : radius_;
   }
   for (std::size_t k = 0; kind_ == Kind::waypoints && k + 2 < s.waypoints.size(); k += 3) {

@@ -85,7 +85,7 @@ class PathRun final : public PairRun {
         path_.emplace(s, random, bars);
       } while (!meets());
     }
-    probe_ = bodies_->probe();
+    contact_ = bodies_->contact();
     if (now_.loop == 0) first_bodies_ = bodies_;
     length_ = path_->length(kLookAt);
   }
@@ -96,15 +96,15 @@ class PathRun final : public PairRun {
         setup_.radius_second, setup_.radius, kMostTries));
   }
   bool meets() const {
-    const std::unique_ptr<PairProbe> probe = bodies_->probe();
+    const std::unique_ptr<PairContact> contact = bodies_->contact();
     const bool two = !bodies_->has_wall && setup_.radius_second > 0;
     const double r = two ? std::min(setup_.radius, setup_.radius_second) : setup_.radius;
     const PairState second = bodies_->state_of_second();
     for (int k = 0; k < kLookAt; ++k) {
-      probe->forget();
+      contact->forget();
       const PairState first = bodies_->state_of_first(path_->at((k + 0.5) / kLookAt));
-      const PairForces f = probe->at(first, second, 0);
-      const bool met = setup_.in_space() ? f.depth > kHardlyMet * r : f.area > kHardlyMet * r * r;
+      const PairForces f = contact->at(first, second, 0);
+      const bool met = setup_.is_3d() ? f.depth > kHardlyMet * r : f.area > kHardlyMet * r * r;
       if (met && outlines_cross(*bodies_, first, second)) return true;
     }
     return false;
@@ -113,10 +113,10 @@ class PathRun final : public PairRun {
   void begin_pass() {
     now_.step = 0;
     now_.work = now_.stored = now_.start_stored = now_.deepest = 0;
-    probe_->forget();
+    contact_->forget();
     if (now_.loop == 0) records_ = {};
     const PairForces f =
-        probe_->at(bodies_->state_of_first(path_->at(0)), bodies_->state_of_second(), 0);
+        contact_->at(bodies_->state_of_first(path_->at(0)), bodies_->state_of_second(), 0);
     now_.start_stored = f.stored;
   }
   // By the midpoint rule: the forces in the middle of the step, on the way of the whole.
@@ -137,8 +137,8 @@ class PathRun final : public PairRun {
       r.first.spin = {0, 0, turn / dt};
     }
     // Half of the slip reaches the springs before the forces are taken, the rest after.
-    r.forces = probe_->at(r.first, r.second, 0.5 * dt);
-    if (dt > 0) probe_->at(r.first, r.second, 0.5 * dt);
+    r.forces = contact_->at(r.first, r.second, 0.5 * dt);
+    if (dt > 0) contact_->at(r.first, r.second, 0.5 * dt);
     now_.work -= r.forces.force.dot(way) + r.forces.torque_first.z() * turn;
     now_.stored = std::max(now_.stored, r.forces.stored);
     now_.deepest = std::max(now_.deepest, r.forces.depth);
@@ -194,7 +194,7 @@ class PathRun final : public PairRun {
   }
   void visit(Archive& archive) override {
     archive(now_);
-    std::string memory = archive.is_reading() ? "" : probe_->image();
+    std::string memory = archive.is_reading() ? "" : contact_->checkpoint();
     archive(memory);
     archive(done_loops_);
     records_.visit(archive);
@@ -202,13 +202,13 @@ class PathRun final : public PairRun {
     archive.require(now_.loop >= 0 && now_.loop <= loops_);
     if (!archive.is_reading()) return;
     if (!done()) prepare();  // the first bodies stay those of the constructor
-    probe_->restore(memory);
+    contact_->restore(memory);
   }
 
   int loops_;
   std::optional<PairBodies> bodies_, first_bodies_;
   std::optional<PairPath> path_;
-  std::unique_ptr<PairProbe> probe_;
+  std::unique_ptr<PairContact> contact_;
   double length_ = 0;
   Now now_;
   std::vector<double> done_loops_;  // kLoopColumns of one loop after the other

@@ -50,7 +50,7 @@ Snapshot snapshot_of(const PairRecord& r, Snapshot out, double friction) {
   return out;
 }
 
-// Of a body that turns about z alone.
+// The angle of a body that turns about z alone.
 double turning_about_z(const std::array<double, 4>& q) { return 2 * std::atan2(q[3], q[0]); }
 
 double column(const PairRecord& r, std::size_t k, bool in_space) {

@@ -58,7 +58,7 @@ struct PairSetup {
                     speeds, angles, path, depth, amplitude, swing, turns, steps, loops, waypoints,
                     records, material, motion);
   }
-  bool in_space() const { return shape == "sphere"; }
+  bool is_3d() const { return shape == "sphere"; }
 };
 
 /// A column of a table that the run leaves, with its unit.

@@ -184,7 +184,7 @@ Study pair_study() {
   out.foresee = [](const Case& value, std::int64_t draws) {
     return dem::foresee_pair(value.get<dem::PairSetup>(), realization_seeds(value), draws);
   };
-  out.dimension = [](const Case& value) { return value.get<dem::PairSetup>().in_space() ? 3 : 2; };
+  out.dimension = [](const Case& value) { return value.get<dem::PairSetup>().is_3d() ? 3 : 2; };
   out.dimension_key = "pair.shape";
   out.analyse = analyse_pair;
   return out;

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "coupling/fit/heap_result.h"
-#include "coupling/heap/scaled.h"
-#include "coupling/heap/setup.h"
 #include "coupling/observe/seen_models.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/measured_base.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/specimen/scaled.h"
+#include "coupling/specimen/setup.h"
 #include "coupling/studies/pile/figures.h"
 #include "coupling/studies/pile/page.h"
 #include "coupling/studies/pile/pile_ensemble.h"
@@ -45,8 +45,8 @@ class PileAnalysis {
     }
     const std::string averaged = describe(piles_.methods.front().options);
     const std::shared_ptr<const FittedPiles> fitted = fit_models(out);
-    out.page = [averaged, beside, fitted, flat = flat_piles_note()](const StudyResult& result,
-                                                                    const Realization* first) {
+    out.page = [averaged, beside, fitted, flat = unfitted_flanks_note()](const StudyResult& result,
+                                                                         const Realization* first) {
       return pile_page(result, first, {averaged, flat, beside, fitted.get()});
     };
     return out;
@@ -211,7 +211,7 @@ class PileAnalysis {
   }
 
   // "no line fits a flank of 2 of 3 piles"; empty: of all piles both slopes are known.
-  std::string flat_piles_note() const {
+  std::string unfitted_flanks_note() const {
     std::size_t flat = 0;
     for (const PileFrame& f : piles_.frames) {
       flat += std::isnan(f.repose_left_deg + f.repose_right_deg) ? 1U : 0U;

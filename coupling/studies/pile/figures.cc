@@ -1,7 +1,7 @@
 #include "coupling/studies/pile/figures.h"
 
-#include "coupling/heap/axis_stress.h"
 #include "coupling/run/finished_runs.h"
+#include "coupling/specimen/axis_stress.h"
 #include "coupling/statistics/spread.h"
 #include "coupling/studies/pile/keys.h"
 #include "coupling/studies/pile/pile_ensemble.h"
@@ -61,7 +61,7 @@ const std::vector<Figure<PileFacts>>& pile_rows() {
       {"relaxation.mean_displacement", "d", "mean way of a grain in it, mean diameters"},
       {"relaxation.largest_displacement", "d", "largest way, mean diameters"},
       {"pile.grains_not_poured", "-", "line source: left over when the pile came to a point"},
-      {"pile.volume_fraction_centre", "-", "in a window about the apex (dem/heap)",
+      {"pile.volume_fraction_centre", "-", "in a window about the apex (coupling/specimen)",
        [](F f) { return f.frame.centre_fraction; }},
       {"pile.volume_fraction_surface", "-", "in windows along the flanks",
        [](F f) { return f.frame.surface_fraction; }},

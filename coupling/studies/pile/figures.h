@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "coupling/case/case.h"
-#include "coupling/heap/dip.h"
-#include "coupling/heap/pile_frame.h"
-#include "coupling/heap/setup.h"
 #include "coupling/result/figure.h"
+#include "coupling/specimen/dip.h"
+#include "coupling/specimen/pile_frame.h"
+#include "coupling/specimen/setup.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::coupling {

@@ -7,8 +7,8 @@
 
 #include "coupling/studies/pile/pile_checks.h"
 #include "coupling/studies/pile/simulation.h"
-#include "dem/heap/grain_family.h"
-#include "dem/heap/source.h"
+#include "dem/grains/grain_family.h"
+#include "dem/pouring/source.h"
 #include "dem/run/common.h"
 #include "dem/run/judge_draws.h"
 
@@ -39,7 +39,8 @@ double length_in_grains(const PileSetup& s) {
   return count;
 }
 
-// Of all grains of a pile, m2: none is larger than the circle or ellipse that carries its corners.
+// The area of all grains of a pile, m2: none is larger than the circle or ellipse through its
+// corners.
 double most_area(const PileSetup& s) {
   if (s.shape.kind == "irregular" || s.shape.kind == "outline") {
     return std::numeric_limits<double>::infinity();

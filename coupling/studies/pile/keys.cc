@@ -2,7 +2,7 @@
 #include "coupling/studies/pile/keys.h"
 
 #include "coupling/case/declare.h"
-#include "coupling/heap/setup.h"
+#include "coupling/specimen/setup.h"
 #include "coupling/studies/pile/simulation.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::PileSetup, MEMBER)

@@ -13,7 +13,7 @@
 #include "coupling/report/judgement.h"
 #include "coupling/run/comparison_page.h"
 #include "coupling/studies/pile/simulation.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -131,7 +131,7 @@ Table changes_of(const Summary& summary) {
   for (const auto& [key, unused] : summary) {
     if (!key.starts_with(first) || !key.ends_with(last)) continue;
     const std::string name = key.substr(0, key.size() - last.size());
-    if (const auto gravity = dem::parse_number(name.substr(first.size()))) {
+    if (const auto gravity = parse_number(name.substr(first.size()))) {
       changes[*gravity] = name;
     }
   }

@@ -8,7 +8,7 @@
 #include "coupling/studies/pile/gravity_changes.h"
 #include "coupling/studies/pile/pile_figures.h"
 #include "coupling/studies/pile/simulation.h"
-#include "dem/heap/grain_family.h"
+#include "dem/grains/grain_family.h"
 #include "dem/quasistatic/contact_network.h"
 #include "dem/run/common.h"
 #include "dem/run/fingerprint.h"
@@ -97,7 +97,7 @@ class PileChangeRun final : public ArchivedRun {
                                           [](const Grain& g) { return !g.fixed; }));
   }
 
-  // Of the material, with the time step that these grains bear.
+  // Settings of the material, with the time step that these grains bear.
   EngineSettings settings(int threads) const {
     std::vector<ShapedGrain> grains;
     bool polygons = false;

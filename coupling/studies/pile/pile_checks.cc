@@ -6,12 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "coupling/specimen/surface.h"
 #include "coupling/studies/pile/simulation.h"
 #include "dem/engine/engine.h"
-#include "dem/heap/funnel.h"
-#include "dem/heap/source.h"
-#include "dem/heap/surface.h"
+#include "dem/pouring/funnel.h"
+#include "dem/pouring/source.h"
 #include "dem/run/common.h"
+#include "dem/shared/refuse.h"
 
 namespace grainfield::dem {
 namespace {
@@ -26,14 +27,9 @@ constexpr double kLineReserve = 2.5;
 constexpr double kMostNotPoured = 0.2;
 // s; a free fall through the largest funnel that makes sense takes a part of it.
 constexpr double kMostWaiting = 2;
-// Of the pile's weight, and what a few strays that rolled to the wall may press on it besides.
+// Shares of the pile's weight, and what a few strays that rolled to the wall may press on it
+// besides.
 constexpr double kMostLean = 1e-3, kStrays = 3, kMostOfStrays = 4e-3;
-
-void require(bool holds, const char* key, double found, const std::string& allowed) {
-  if (!holds) {
-    throw std::invalid_argument(fmt::format("{}: found {:g}, allowed: {}", key, found, allowed));
-  }
-}
 
 void require_word(const std::string& found, const char* key,
                   const std::vector<std::string>& allowed) {
@@ -90,8 +86,8 @@ std::vector<char> standing(const Snapshot& s) {
   return stands;
 }
 
-// Of any grain of a family whose outline is not given otherwise, m: so that no later realization is
-// refused what the first one may.
+// The diameter of any grain of a family whose outline is not given otherwise, m: no later
+// realization is refused what the first one may.
 double largest_diameter(const ShapeSetup& s) {
   if (s.kind == "irregular" || s.kind == "outline") return 0;
   // From its centroid a corner of RAND1 may be farther than from the ellipse's middle: triangles by

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "coupling/studies/pile/simulation.h"
-#include "dem/heap/grain_family.h"
+#include "dem/grains/grain_family.h"
 #include "dem/snapshot/snapshot.h"
 
 namespace grainfield::dem {

@@ -8,9 +8,9 @@
 
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/base.h"
-#include "coupling/heap/scaled.h"
-#include "coupling/heap/setup.h"
 #include "coupling/run/averaging_setup.h"
+#include "coupling/specimen/scaled.h"
+#include "coupling/specimen/setup.h"
 #include "coupling/studies/pile/figures.h"
 #include "dem/snapshot/contact_changes.h"
 

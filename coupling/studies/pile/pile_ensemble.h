@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "coupling/case/case.h"
-#include "coupling/heap/dip.h"
-#include "coupling/heap/pile_frame.h"
 #include "coupling/observe/method_averages.h"
 #include "coupling/run/realization_file.h"
+#include "coupling/specimen/dip.h"
+#include "coupling/specimen/pile_frame.h"
 
 namespace grainfield::coupling {
 

@@ -3,14 +3,14 @@
 #include <cmath>
 #include <limits>
 
-#include "dem/heap/relaxation.h"
-#include "dem/heap/volume_fraction.h"
+#include "coupling/specimen/relaxation.h"
+#include "coupling/specimen/volume_fraction.h"
 #include "dem/snapshot/contact_changes.h"
 
 namespace grainfield::dem {
 
 void add_heap_figures(const Snapshot& pile, double diameter, std::map<std::string, double>& f) {
-  const HeapShape heap = measure_heap(free_surface(pile, diameter));
+  const coupling::HeapShape heap = coupling::measure_heap(coupling::free_surface(pile, diameter));
   f["dem.repose_angle_left_deg"] = heap.repose_left_deg;
   f["dem.repose_angle_right_deg"] = heap.repose_right_deg;
   f["pile.repose_error_left_deg"] = heap.repose_left_error_deg;
@@ -22,9 +22,9 @@ void add_heap_figures(const Snapshot& pile, double diameter, std::map<std::strin
 
   const auto fraction = [&](const Outline& window) {
     return window.empty() ? std::numeric_limits<double>::quiet_NaN()
-                          : volume_fraction(pile, window);
+                          : coupling::volume_fraction(pile, window);
   };
-  const HeapWindows windows = windows_of(heap, diameter);
+  const coupling::HeapWindows windows = coupling::windows_of(heap, diameter);
   f["dem.volume_fraction"] = fraction(windows.whole);
   f["pile.volume_fraction_centre"] = fraction(windows.centre);
   f["pile.volume_fraction_surface"] =
@@ -39,7 +39,7 @@ void add_heap_figures(const Snapshot& pile, double diameter, std::map<std::strin
 
 void add_relaxation_figures(const Snapshot& poured, const Snapshot& pile, double diameter,
                             std::map<std::string, double>& f) {
-  const Relaxation r = measure_relaxation(poured, pile, diameter);
+  const coupling::Relaxation r = coupling::measure_relaxation(poured, pile, diameter);
   f["relaxation.base_weight_ratio_before"] = r.base_before;
   f["relaxation.level_error_before"] = r.levels_before;
   f["relaxation.level_error_after"] = r.levels_after;

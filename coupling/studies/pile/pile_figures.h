@@ -13,7 +13,7 @@ void add_heap_figures(const Snapshot& pile, double diameter,
                       std::map<std::string, double>& figures);
 
 /// "relaxation.force_change", ...: from the poured pile, in which grains may sleep, to the pile at
-/// rest (dem/heap/relaxation.h).
+/// rest (coupling/specimen/relaxation.h).
 void add_relaxation_figures(const Snapshot& poured, const Snapshot& pile, double diameter,
                             std::map<std::string, double>& figures);
 

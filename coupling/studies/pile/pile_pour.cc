@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/specimen/surface.h"
 #include "coupling/studies/pile/pile_checks.h"
 #include "coupling/studies/pile/poured_run.h"
-#include "dem/heap/funnel.h"
-#include "dem/heap/surface.h"
+#include "dem/pouring/funnel.h"
 
 namespace grainfield::dem {
 namespace {
@@ -114,8 +114,9 @@ void PileRun::drop_layer() {
     const Snapshot now = engine_->snapshot();
     check_walls_free(setup_, now, largest_diameter_,
                      static_cast<double>(poured_) / setup_.source.grains);
-    const Surface surface = free_surface(now, mean_diameter_);
-    const double plateau = plateau_of(surface, line_, kPlateauDrop * mean_diameter_).length();
+    const coupling::Surface surface = coupling::free_surface(now, mean_diameter_);
+    const double plateau =
+        coupling::plateau_of(surface, line_, kPlateauDrop * mean_diameter_).length();
     const double middle = 0.5 * (line_.left + line_.right) + setup_.source.shift;
     line_ = {middle - 0.5 * plateau, middle + 0.5 * plateau};
     const double end = 0.5 * setup_.floor.length;

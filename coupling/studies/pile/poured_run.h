@@ -9,8 +9,8 @@
 
 #include "coupling/studies/pile/gravity_changes.h"
 #include "coupling/studies/pile/simulation.h"
-#include "dem/heap/grain_family.h"
-#include "dem/heap/source.h"
+#include "dem/grains/grain_family.h"
+#include "dem/pouring/source.h"
 #include "dem/random/random.h"
 #include "dem/run/phases.h"
 
@@ -79,8 +79,8 @@ class PileRun final : public ArchivedRun {
   int poured_ = 0;  // released by the point source, dropped by the line source
   double top_ = 0;  // of the grains at rest when the last one joined, m
   std::deque<Flight> in_flight_;
-  Stretch line_;          // of the last layer
-  long layer_start_ = 0;  // step within the phase
+  coupling::Stretch line_;  // of the last layer
+  long layer_start_ = 0;    // step within the phase
   int layer_grains_ = 0;
   double awake_sum_ = 0;
   long awake_samples_ = 0;

@@ -7,7 +7,7 @@
 
 #include "coupling/studies/pile/pile_checks.h"
 #include "coupling/studies/pile/poured_run.h"
-#include "dem/heap/funnel.h"
+#include "dem/pouring/funnel.h"
 
 namespace grainfield::dem {
 namespace {

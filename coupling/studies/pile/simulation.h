@@ -7,10 +7,10 @@
 #include <tuple>
 #include <vector>
 
-#include "dem/heap/source.h"
+#include "dem/grains/packing.h"
 #include "dem/laws/material_setup.h"
 #include "dem/motion/motion_setup.h"
-#include "dem/packing/packing.h"
+#include "dem/pouring/source.h"
 #include "dem/run/outlook.h"
 #include "dem/run/run.h"
 #include "dem/run/setup.h"

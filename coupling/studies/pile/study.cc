@@ -4,11 +4,11 @@
 #include <fmt/ranges.h>
 
 #include "coupling/fit/fit_keys.h"
-#include "coupling/heap/setup.h"
 #include "coupling/models/subject.h"
 #include "coupling/observe/setup.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/measured_base.h"
+#include "coupling/specimen/setup.h"
 #include "coupling/studies/pile/keys.h"
 #include "coupling/studies/pile/pile_run.h"
 #include "coupling/studies/pile/simulation.h"

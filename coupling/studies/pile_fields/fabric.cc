@@ -87,7 +87,7 @@ double mean_axis(const std::vector<double>& degrees) {
   return std::abs(sum) > 0 ? std::arg(sum) / 2 * kDegrees : NAN;
 }
 
-// Of the mean tensors on the points inside, in the order of axis_rows().
+// Figures of the mean tensors on the points inside, in the order of axis_rows().
 using AxisFigures = std::vector<ValueWithError>;
 const std::vector<ErrorFigure<AxisFigures>>& axis_rows() {
   const auto number = [](std::size_t k) { return [k](const AxisFigures& all) { return all[k]; }; };

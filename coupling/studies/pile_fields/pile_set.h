@@ -8,8 +8,8 @@
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/ensemble.h"
 #include "coupling/case/case.h"
-#include "coupling/heap/pile_frame.h"
 #include "coupling/run/realization_file.h"
+#include "coupling/specimen/pile_frame.h"
 #include "coupling/strain/strain.h"
 #include "coupling/studies/pile_fields/setup.h"
 

@@ -25,7 +25,7 @@ struct Watched {
 constexpr std::array<Watched, 3> kWatched{
     Watched{"stress", "stress: -σ_yy"}, {"strain", "strain: ε_yy"}, {"fabric", "fabric: tr F"}};
 
-// Of one quantity and one size.
+// One quantity at one size.
 struct Step {
   double value = NAN;  // over that of the largest RVE at the same place, mean over places
   // Between piles at the same place over the mean, rms over places; of a single pile the distance

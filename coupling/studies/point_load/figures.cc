@@ -7,7 +7,7 @@ namespace {
 
 using Value = std::optional<FigureValue>;
 
-// Of realizations that are enough to compare a ring with the axis.
+// A figure of realizations that are enough to compare a ring with the axis.
 std::optional<ValueWithError> of_ring(const RingFacts& f, const FigureValue& value,
                                       std::optional<double> error = std::nullopt) {
   if (f.ring.word().empty()) return std::nullopt;

@@ -6,9 +6,9 @@
 
 #include "coupling/studies/point_load/simulation.h"
 #include "coupling/studies/point_load/simulation_space.h"
-#include "dem/heap/grain_family.h"
-#include "dem/packing/packing.h"
-#include "dem/packing/space_layer.h"
+#include "dem/grains/grain_family.h"
+#include "dem/grains/layer_3d.h"
+#include "dem/grains/packing.h"
 #include "dem/run/common.h"
 #include "dem/run/judge_draws.h"
 
@@ -72,7 +72,7 @@ Outlook foresee_space_load(const PointLoadSetup& s, const std::vector<std::uint6
   } else {
     const auto draw = [&](Random& random, std::int64_t& left) {
       std::vector<ShapedGrain> shapes;
-      for (const NewGrain& g : space_floor(p, s.material.density, random)) {
+      for (const NewGrain& g : floor_3d(p, s.material.density, random)) {
         shapes.emplace_back().axes = g.axes;
       }
       const std::vector<ShapedGrain> grains = draw_layer(p, random, left);

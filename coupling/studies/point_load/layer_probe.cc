@@ -8,8 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "dem/computation_failed.h"
 #include "dem/quasistatic/quasistatic.h"
+#include "dem/shared/computation_failed.h"
 #include "dem/snapshot/contact_changes.h"
 #include "dem/snapshot/images.h"
 

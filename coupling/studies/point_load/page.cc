@@ -31,7 +31,7 @@ void add_profiles(Report& report, const Comparison& c) {
   add("Response on the base", base);
 }
 
-// Of the model that the verdict names; the first where it names none.
+// The map of the model that the verdict names; the first where it names none.
 const ModelMap& nearest(const std::vector<ModelMap>& maps, const Comparison& c) {
   for (std::size_t m = 0; m < std::min(maps.size(), c.models.size()); ++m) {
     if (c.models[m].key == c.judgement.best) return maps[m];

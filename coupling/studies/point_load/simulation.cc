@@ -12,7 +12,7 @@
 #include "coupling/studies/point_load/layer_figures.h"
 #include "coupling/studies/point_load/load_by_newton.h"
 #include "coupling/studies/point_load/simulation_space.h"
-#include "dem/packing/packing.h"
+#include "dem/grains/packing.h"
 #include "dem/run/fingerprint.h"
 #include "dem/run/phases.h"
 

@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
+#include "dem/grains/packing.h"
 #include "dem/laws/material_setup.h"
 #include "dem/motion/motion_setup.h"
-#include "dem/packing/packing.h"
 #include "dem/run/outlook.h"
 #include "dem/run/run.h"
 #include "dem/run/setup.h"

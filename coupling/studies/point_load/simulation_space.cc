@@ -15,8 +15,8 @@
 #include "coupling/studies/point_load/layer_probe.h"
 #include "coupling/studies/point_load/load_by_newton.h"
 #include "coupling/studies/point_load/simulation.h"
-#include "dem/heap/superellipsoid_family.h"
-#include "dem/packing/space_layer.h"
+#include "dem/grains/layer_3d.h"
+#include "dem/grains/superellipsoid_family.h"
 #include "dem/run/fingerprint.h"
 #include "dem/run/phases.h"
 #include "dem/run/softness.h"
@@ -92,8 +92,8 @@ SpaceLoadRun::SpaceLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int 
   if (!angular) settings_ = space_load_settings(setup, threads);
   Random random(seed);
   const double density = setup_.material.density;
-  const std::vector<NewGrain> floor = space_floor(setup_.packing, density, random);
-  const std::vector<NewGrain> grains = space_grains(setup_.packing, density, random);
+  const std::vector<NewGrain> floor = floor_3d(setup_.packing, density, random);
+  const std::vector<NewGrain> grains = grains_3d(setup_.packing, density, random);
   std::vector<ShapedGrain> shapes;  // of superellipsoids, and of the spheres of their floor
   if (angular) {
     for (const auto* all : {&floor, &grains}) {
@@ -113,7 +113,7 @@ SpaceLoadRun::SpaceLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int 
 
 std::unique_ptr<Engine> SpaceLoadRun::empty_engine() const {
   std::unique_ptr<Engine> engine = make_engine(settings_);
-  for (const Wall& wall : space_walls(setup_.packing, setup_.material)) engine->add_wall(wall);
+  for (const Wall& wall : walls_3d(setup_.packing, setup_.material)) engine->add_wall(wall);
   return engine;
 }
 
@@ -192,7 +192,7 @@ void SpaceLoadRun::probe() {
     return begin_load();
   }
   if (!prober_) {
-    LayerProber prober(*unloaded_, settings_, space_surface(*unloaded_, setup_.packing),
+    LayerProber prober(*unloaded_, settings_, surface_3d(*unloaded_, setup_.packing),
                        setup_.load.probe_strain);
     if (prober.settle(watch_of("probe"))) prober_.emplace(std::move(prober));
     return;
@@ -340,7 +340,7 @@ RunResult SpaceLoadRun::result() const {
                      by_newton() ? diagnostics_of(*loaded_, settings_) : engine_->measure(), f);
   add_reached("load", reached_, f);
   const auto sides = layer_sides(setup_.packing);
-  add_layer_figures(*unloaded_, *loaded_, space_surface(*unloaded_, setup_.packing), sides[0],
+  add_layer_figures(*unloaded_, *loaded_, surface_3d(*unloaded_, setup_.packing), sides[0],
                     sides[0] * sides[1], f);
   f["load.force"] = force_of_load(setup_);
   f["load.force_over_weight"] =

@@ -6,7 +6,7 @@
 
 #include "coupling/studies/point_load/simulation.h"
 #include "dem/engine/engine.h"
-#include "dem/heap/grain_family.h"
+#include "dem/grains/grain_family.h"
 #include "dem/run/run.h"
 
 namespace grainfield::dem {

@@ -136,7 +136,7 @@ bool add_law(const BlockSetup& setup, const StateTable& table, const dem::Sample
       } catch (const continuum::BadParameter& e) {
         // What the grains ask of a law it may be unable to give: that is a finding, not a failure.
         lacking = e.what();
-      } catch (const continuum::ComputationFailed& e) {
+      } catch (const ComputationFailed& e) {
         lacking = e.what();
       }
     }

@@ -23,7 +23,7 @@ constexpr double kUnloaded = 0.01;
 // A block whose volume the path prescribes shows no difference of it beyond rounding.
 constexpr double kNoDifference = 1e-9;
 
-// Of the realizations that have a value.
+// The spread of the realizations that have a value.
 Spread spread_in(const Eigen::MatrixXd& values, Index state) {
   std::vector<double> known;
   for (const double v : values.row(state)) {

@@ -85,7 +85,7 @@ struct SamplePath {
   Index last() const { return plan.records; }
   VectorXd inside() const { return -way(plan.dim == 2 ? "sigma_yy" : "sigma_zz"); }
   VectorXd outside() const { return dem::is_periodic(plan) ? inside() : way("pressure_on_lid"); }
-  // Of the states of the loading at a tenth of its strain or beyond.
+  // The largest of the loading's states at a tenth of its strain or beyond.
   double largest_late(const VectorXd& values) const {
     const Index from = std::max<Index>(1, (last() + 9) / 10);
     return values.segment(from, last() - from + 1).maxCoeff();

@@ -5,7 +5,7 @@
 #include "coupling/run/grain_keys.h"
 #include "coupling/studies/sample/simulation/grains.h"
 #include "coupling/studies/sample/simulation/setup.h"
-#include "dem/packing/loose.h"
+#include "dem/grains/loose.h"
 
 #define IN(MEMBER) GRAINFIELD_MEMBER(dem::SampleSetup, plan.MEMBER)
 

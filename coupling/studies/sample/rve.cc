@@ -18,7 +18,7 @@
 #include "coupling/studies/sample/simulation/path.h"
 #include "coupling/studies/sample/simulation/state.h"
 #include "dem/run/common.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -194,7 +194,7 @@ RveTable rve_table(const std::vector<std::string>& files, const RveSetup& setup,
       gradients.push_back(gradient_between(start, now));
       stresses.push_back(now.contact_stress);
       if (is_first) {
-        out.strain.push_back(dem::parse_number(state.attributes.at("strain")).value_or(kNan));
+        out.strain.push_back(parse_number(state.attributes.at("strain")).value_or(kNan));
       }
     }
     for (std::size_t r = 0; r < out.radii.size(); ++r) {

@@ -8,7 +8,7 @@
 
 #include "continuum/constants.h"
 #include "coupling/averaging/grain_facts.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 double attribute(const dem::Snapshot& s, const char* name, bool may_lack = false) {
   const auto at = s.attributes.find(name);
   if (at != s.attributes.end()) {
-    if (const auto number = dem::parse_number(at->second)) return *number;
+    if (const auto number = parse_number(at->second)) return *number;
   }
   if (may_lack && at == s.attributes.end()) return kNan;
   throw std::invalid_argument(
@@ -37,7 +37,7 @@ double friction_angle_deg(const StateFacts& f) {
   return std::fabs(sine) <= 1 ? std::asin(sine) * 180 / std::numbers::pi : kNan;
 }
 
-// Of an edge since the first state, logarithmic, extension positive.
+// The stretch of an edge since the first state, logarithmic, extension positive.
 double stretch(const StateFacts& f, int axis) {
   return std::log(f.now.edges(axis, axis) / f.first.edges(axis, axis));
 }

@@ -28,7 +28,7 @@ double dilation_deg(StrengthTest test, double slope) {
   return std::fabs(sine) <= 1 ? std::asin(sine) / kDegree : kNan;
 }
 
-// Of volumetric over strain by least squares, states from to `to`, both included.
+// The slope of volumetric over strain by least squares, states `from` to `to`, both included.
 double fitted_slope(const StrengthPath& path, Index from, Index to) {
   const Index n = to - from + 1;
   if (n < 2) return kNan;

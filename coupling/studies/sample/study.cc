@@ -28,7 +28,7 @@
 namespace grainfield::coupling {
 namespace {
 
-// Of inertial numbers (GDR MiDi 2004).
+// The bound of inertial numbers (GDR MiDi 2004).
 constexpr double kQuasiStatic = 1e-3;
 
 const char* strain_name(const std::string& deformation) {
@@ -258,7 +258,7 @@ void add_moduli(const Case& value, const std::vector<std::string>& files, const 
   for (Section& section : block_sections(comparison)) report.moduli.push_back(std::move(section));
 }
 
-// Of a test too fast to be one of states at rest.
+// A warning of a test too fast to be one of states at rest.
 void warn_of_inertia(StudyResult& out) {
   const auto found = out.summary.find("sample.inertial_number");
   if (found == out.summary.end()) return;

@@ -10,11 +10,11 @@
 
 #include "continuum/model.h"
 #include "coupling/averaging/average.h"
-#include "coupling/heap/base_shape.h"
-#include "coupling/heap/slip_lines.h"
 #include "coupling/models/evaluate_model.h"
 #include "coupling/result/figure.h"
 #include "coupling/run/study_result.h"
+#include "coupling/specimen/base_shape.h"
+#include "coupling/specimen/slip_lines.h"
 #include "coupling/studies/wedge/page.h"
 #include "coupling/studies/wedge/setup.h"
 

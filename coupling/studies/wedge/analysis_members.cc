@@ -15,7 +15,7 @@
 #include "coupling/models/subject.h"
 #include "coupling/studies/wedge/analysis.h"
 #include "coupling/studies/wedge/setup.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -36,7 +36,7 @@ double relative(const Eigen::VectorXd& of, const Eigen::VectorXd& from) {
 
 /// The angle a base stands for: none where it is a word.
 bool is_angle(const std::string& base) {
-  const std::optional<double> angle = dem::parse_number(base);
+  const std::optional<double> angle = parse_number(base);
   return angle && *angle >= 0 && *angle <= 80;
 }
 
@@ -193,10 +193,9 @@ void WedgeAnalysis::evaluate(WedgeMember& member) const {
     member.figures = model->figures();
     member.shape =
         base_shape(lines_.back().col(0), member.pressures.back(), std::min(left_, right_));
-  } catch (const continuum::ComputationFailed& failure) {
+  } catch (const ComputationFailed& failure) {
     if (!mapped_ || !member.heap)
-      throw continuum::ComputationFailed(
-          fmt::format("model {}: {}", member.choice.label, failure.what()));
+      throw ComputationFailed(fmt::format("model {}: {}", member.choice.label, failure.what()));
     member.failed = failure.what();
   }
   member.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -8,7 +8,7 @@ using Value = std::optional<FigureValue>;
 
 bool has_nearest(const WedgeFacts& f) { return f.member.heap && !f.member.nearest.empty(); }
 
-// Of a member that is there.
+// The value of a member that is there.
 template <class T>
 Value of_shape(const WedgeFacts& f, const T& value) {
   return f.member.failed.empty() ? Value(value) : std::nullopt;

@@ -22,8 +22,8 @@ StudyResult WedgeAnalysis::run() {
   const auto first = std::find_if(members_.begin(), members_.end(),
                                   [](const WedgeMember& s) { return s.heap && s.failed.empty(); });
   if (first == members_.end())
-    throw continuum::ComputationFailed("no heap of the study has an equilibrium; the first: " +
-                                       members_[first_heap()].failed);
+    throw ComputationFailed("no heap of the study has an equilibrium; the first: " +
+                            members_[first_heap()].failed);
   for (WedgeMember& member : members_) find_nearest(member);
   StudyResult out = begin_result(value_, {});
   compare_with(*first, out);

@@ -6,6 +6,7 @@
 
 #include "continuum/model.h"
 #include "tests/continuum/heap_scene.h"
+#include "tests/continuum/refused_model.h"
 
 using namespace grainfield::continuum;
 using namespace grainfield::continuum::testing;
@@ -15,16 +16,6 @@ using ::testing::HasSubstr;
 namespace {
 
 constexpr double kRounding = 1e-12;
-
-std::string refusal(const std::string& model, const Settings& settings) {
-  try {
-    make_model(model, settings);
-  } catch (const BadParameter& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    return error.what();
-  }
-  return "accepted";
-}
 
 Eigen::Vector3d on_ray(const HeapField& field, std::size_t region, double theta) {
   const Eigen::Vector2d e(std::sin(theta), -std::cos(theta));

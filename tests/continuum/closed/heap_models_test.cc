@@ -66,7 +66,7 @@ double principal_ratio(const Eigen::Vector3d& s, double phi) {
   return (principal[0] - principal[1]) / sum / std::sin(phi);
 }
 
-// Of many directions, up to kNear of a region's width from the rays that bound it.
+// The largest of many directions, up to kNear of a region's width from the rays that bound it.
 constexpr double kNear = 1e-6;
 double sampled_ratio(const HeapField& field, int directions) {
   double largest = 0;

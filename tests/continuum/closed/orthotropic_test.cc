@@ -9,6 +9,7 @@
 #include "continuum/closed/half_space.h"
 #include "continuum/model.h"
 #include "dem/random/random.h"
+#include "tests/continuum/refused_model.h"
 
 using namespace grainfield::continuum;
 using grainfield::dem::Random;
@@ -17,12 +18,7 @@ using ::testing::HasSubstr;
 namespace {
 
 std::string refusal(const Settings& settings) {
-  try {
-    make_model("orthotropic_half_plane", settings);
-  } catch (const BadParameter& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal("orthotropic_half_plane", settings);
 }
 
 Orthotropy random_medium(Random& random) {

@@ -7,6 +7,7 @@
 #include "continuum/closed/osl_layer.h"
 #include "continuum/model.h"
 #include "tests/continuum/heap_scene.h"
+#include "tests/continuum/refused_model.h"
 
 using namespace grainfield::continuum;
 using namespace grainfield::continuum::testing;
@@ -16,16 +17,6 @@ using ::testing::HasSubstr;
 namespace {
 
 constexpr double kRounding = 1e-12;
-
-std::string refusal(const std::string& model, const Settings& settings) {
-  try {
-    make_model(model, settings);
-  } catch (const BadParameter& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    return error.what();
-  }
-  return "accepted";
-}
 
 const SectorField& field_of(const std::unique_ptr<Model>& model) {
   return dynamic_cast<const SectorField&>(dynamic_cast<const HeapModel&>(*model).field());

@@ -7,6 +7,7 @@
 
 #include "continuum/model.h"
 #include "tests/continuum/cantelaube_core_scene.h"
+#include "tests/continuum/refused_model.h"
 
 using namespace grainfield::continuum;
 using grainfield::continuum::testing::figure;
@@ -18,14 +19,7 @@ using ::testing::HasSubstr;
 
 namespace {
 
-std::string refusal(const Settings& settings) {
-  try {
-    make_model("fe_cantelaube_core", settings);
-  } catch (const BadParameter& error) {
-    return error.what();
-  }
-  return "accepted";
-}
+std::string refusal(const Settings& settings) { return refusal("fe_cantelaube_core", settings); }
 
 }  // namespace
 

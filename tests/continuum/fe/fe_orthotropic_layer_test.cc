@@ -9,6 +9,7 @@
 #include "continuum/model.h"
 #include "tests/continuum/orthotropic_layer_oracle.h"
 #include "tests/continuum/orthotropic_layer_scene.h"
+#include "tests/continuum/refused_model.h"
 
 using namespace grainfield::continuum;
 using grainfield::continuum::testing::along;
@@ -19,14 +20,7 @@ using ::testing::HasSubstr;
 
 namespace {
 
-std::string refusal(const Settings& settings) {
-  try {
-    make_model("fe_orthotropic_layer", settings);
-  } catch (const BadParameter& error) {
-    return error.what();
-  }
-  return "accepted";
-}
+std::string refusal(const Settings& settings) { return refusal("fe_orthotropic_layer", settings); }
 
 }  // namespace
 

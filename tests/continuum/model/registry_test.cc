@@ -5,23 +5,10 @@
 #include <set>
 
 #include "continuum/model.h"
+#include "tests/continuum/refused_model.h"
 
 using namespace grainfield::continuum;
 using testing::HasSubstr;
-
-namespace {
-
-std::string refusal(const std::string& model, const Settings& settings) {
-  try {
-    make_model(model, settings);
-  } catch (const BadParameter& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    return error.what();
-  }
-  return "accepted";
-}
-
-}  // namespace
 
 TEST(Registry, UnknownModelNamesTheNearest) {
   EXPECT_THAT(refusal("flamand", {}), HasSubstr("no model 'flamand'; did you mean 'flamant'?"));

@@ -8,7 +8,7 @@
 #include "coupling/averaging/base.h"
 #include "coupling/averaging/kernel.h"
 #include "coupling/store/field_io.h"
-#include "dem/snapshot/hdf5_file.h"
+#include "dem/hdf5/file.h"
 #include "tests/coupling/averaging_scene.h"
 #include "tests/coupling/program.h"
 

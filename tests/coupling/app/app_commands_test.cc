@@ -25,7 +25,7 @@ TEST(Commands, QuickOnesNeedLittleTime) {
   const Folder folder;
   const std::string file = folder.write("x.toml", tiny_case());
   for (const std::string command : {"keys", "cases", "model", "check "}) {
-    // Of several starts the best counts: the machine may be busy with something else.
+    // The best of several starts counts: the machine may be busy with something else.
     double best = 1e9;
     for (int n = 0; n < 3; ++n) {
       const auto start = std::chrono::steady_clock::now();

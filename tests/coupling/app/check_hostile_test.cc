@@ -6,7 +6,7 @@
 
 #include <chrono>
 
-#include "dem/snapshot/hdf5_file.h"
+#include "dem/hdf5/file.h"
 #include "tests/coupling/check_scene.h"
 #include "tests/coupling/reliability_cases.h"
 

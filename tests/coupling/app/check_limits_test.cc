@@ -52,7 +52,7 @@ TEST(CheckLimits, BeyondThemIsRefusedAndAtThemAnsweredSoon) {
     const std::string file = folder.write("x.toml", testing::small_case(study.name));
     for (const Key& key : keys()) {
       if (!key_applies(key, study.name) || !(is_number(key) || is_integer(key))) continue;
-      // Of a section that studies share the grains are a pile's or a layer's.
+      // The grains of a section that studies share are a pile's or a layer's.
       const bool poured = section_applies("source", study.name);
       if (!seen.insert(key.path() + (poured ? " of a pile" : "")).second) continue;
       const double over = is_integer(key) ? key.most + 1 : key.most + std::fabs(key.most) + 1;
@@ -209,7 +209,7 @@ TEST(CheckRealizations, ThoseThatCannotAllBeDrawnAreHeldTighter) {
                          "[floor]\nlength = {}\n",
                          realizations, length)));
   };
-  // Of 400 piles of 6500 grains some 46 are drawn.
+  // Some 46 of 400 piles of 6500 grains are drawn.
   const double least = least_floor(1, 2, [&](double length) { return pouring(1, length); });
   EXPECT_THAT(pouring(400, least), HasSubstr("floor.length: found "));
   EXPECT_EQ(pouring(400, 1.05 * least), "");

@@ -10,11 +10,10 @@
 #include <locale>
 #include <regex>
 
-#include "continuum/number.h"
 #include "coupling/case/case.h"
 #include "coupling/result/field_file.h"
 #include "coupling/tasks/measured_field.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 #include "tests/coupling/program.h"
 
 namespace grainfield::coupling {
@@ -98,11 +97,9 @@ TEST_F(Locale, AProcessMaySetIt) {
   ASSERT_NE(std::setlocale(LC_ALL, kLocale), nullptr);
   std::locale::global(std::locale(kLocale));
   ASSERT_EQ(std::localeconv()->decimal_point, std::string(","));
-  for (const auto& parse : {dem::parse_number, continuum::parse_number}) {
-    EXPECT_EQ(parse("1.5"), 1.5);
-    EXPECT_EQ(parse("1.5e-310"), 1.5e-310);  // by another way: subnormal
-    EXPECT_EQ(parse("1,5"), std::nullopt);
-  }
+  EXPECT_EQ(parse_number("1.5"), 1.5);
+  EXPECT_EQ(parse_number("1.5e-310"), 1.5e-310);  // by another way: subnormal
+  EXPECT_EQ(parse_number("1,5"), std::nullopt);
   const Folder folder;
   const Case value = read_case(folder.write("x.toml", testing::tiny_case()), false,
                                {"material.friction=0.25", "packing.radius=\"3.5 mm\""});

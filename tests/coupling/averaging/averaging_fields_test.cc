@@ -11,6 +11,7 @@
 #include "coupling/averaging/kernel.h"
 #include "dem/snapshot/contact_changes.h"
 #include "tests/coupling/averaging_scene.h"
+#include "tests/refusal.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -147,7 +148,7 @@ TEST(Averaging, FloorAndWallsCarryTheWeight) {
   }
 }
 
-// Of one grain on a floor: the traction's integral over the plane is the floor's force.
+// One grain on a floor: the traction's integral over the plane is the floor's force.
 TEST(Averaging, TractionIntegratesToTheFloorForce) {
   dem::Snapshot s = layer(5, 6, 3);
   const Eigen::MatrixXd grid = grid_points(-0.04, 0.1, 281, -0.04, 0.07, 221);
@@ -322,22 +323,13 @@ TEST(LayerFrame, MeasuresTheLayerAndItsLoad) {
   EXPECT_NEAR(layer_frame(layer(12, 12, 6, true)).floor, 0.01, 0.002);
 }
 
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "nothing thrown";
-}
-
 TEST(Averaging, RefusesWithOneLine) {
   const dem::Snapshot s = layer(13);
   const Eigen::MatrixXd p = line_points(0, 1, 2, 0);
   const auto with = [&](auto change) {
     AverageOptions o = coarse("lucy", 0.01);
     change(o);
-    return refusal([&] { average(s, p, o); });
+    return refusal_of([&] { average(s, p, o); });
   };
   EXPECT_EQ(with([](auto& o) { o.method = "coarse_grain"; }),
             "unknown averaging method \"coarse_grain\"; known: coarse_graining, particle_centre, "
@@ -349,19 +341,19 @@ TEST(Averaging, RefusesWithOneLine) {
   EXPECT_EQ(with([](auto& o) { o.width = 0; }),
             "averaging width is 0 m; it must be positive (a grain diameter or more)");
   EXPECT_EQ(with([](auto& o) { o.threads = 0; }), "averaging on 0 threads; at least 1 is needed");
-  EXPECT_EQ(refusal([&] { average(s, Eigen::MatrixXd::Zero(2, 3), coarse("lucy", 1)); }),
+  EXPECT_EQ(refusal_of([&] { average(s, Eigen::MatrixXd::Zero(2, 3), coarse("lucy", 1)); }),
             "points have 3 coordinates; averaging needs 2");
-  EXPECT_EQ(refusal([&] {
+  EXPECT_EQ(refusal_of([&] {
               average(s, Eigen::MatrixXd::Constant(1, 2, std::numeric_limits<double>::quiet_NaN()),
                       coarse("lucy", 1));
             }),
             "points hold a value that is not finite");
   dem::Snapshot solid = s;
   solid.dim = 3;
-  EXPECT_EQ(refusal([&] { average(solid, p, coarse("lucy", 1)); }),
+  EXPECT_EQ(refusal_of([&] { average(solid, p, coarse("lucy", 1)); }),
             "points have 2 coordinates; averaging needs 3");
   dem::Snapshot empty;
-  EXPECT_EQ(refusal([&] { average(empty, p, coarse("lucy", 1)); }),
+  EXPECT_EQ(refusal_of([&] { average(empty, p, coarse("lucy", 1)); }),
             "the snapshot has no free grain");
 }
 
@@ -372,7 +364,7 @@ TEST(Averaging, RefusesSnapshotsOfDifferentPackings) {
   fixed.grains[2].fixed = true;
   bigger.grains[1].radius = 0.25;
   const auto text = [&](const dem::Snapshot& b) {
-    return refusal([&] { response(a, b, line_points(0, 1, 2, 0), coarse("lucy", 0.01)); });
+    return refusal_of([&] { response(a, b, line_points(0, 1, 2, 0), coarse("lucy", 0.01)); });
   };
   EXPECT_EQ(text(fewer), "snapshots do not belong together: 72 grains unloaded, 60 loaded");
   EXPECT_EQ(text(other),

@@ -84,7 +84,7 @@ TEST_P(EveryKernel, BranchThroughThePointAndBranchOfNoLength) {
   EXPECT_DOUBLE_EQ(branch_weight(*k, p, p, p), k->value(0));
 }
 
-// Of the default of Kernel::along_line, which a new kernel has before it has a closed form.
+// The default of Kernel::along_line, which a new kernel has before it has a closed form.
 class Quadratic : public Kernel {
  public:
   std::string name() const override { return "quadratic"; }

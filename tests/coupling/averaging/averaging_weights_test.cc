@@ -13,6 +13,7 @@
 #include "coupling/averaging/region.h"
 #include "coupling/averaging/weights.h"
 #include "tests/coupling/averaging_scene.h"
+#include "tests/refusal.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -268,39 +269,30 @@ TEST(Averaging, OnlyTheChosenQuantities) {
   EXPECT_EQ(all.columns.back().name, "grains");
 }
 
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "nothing thrown";
-}
-
 TEST(Averaging, RefusesWithOneLineWhatItCannotDo) {
   dem::Snapshot s = layer(2);
   const Eigen::MatrixXd p = line_points(0, 1, 2, 0);
   AverageOptions o = options("area_exact", "lucy", 1);
-  EXPECT_EQ(refusal([&] { average(s, p, o); }),
+  EXPECT_EQ(refusal_of([&] { average(s, p, o); }),
             "unknown kernel of area_exact \"lucy\"; known: circle, square; did you mean "
             "\"circle\"?");
   o.kernel = "circle";
   o.free_surface = "closed";
-  EXPECT_EQ(refusal([&] { average(s, p, o); }),
+  EXPECT_EQ(refusal_of([&] { average(s, p, o); }),
             "unknown free surface \"closed\"; known: open, normalised; did you mean \"open\"?");
   o.free_surface = "open";
   o.quantities = {"fabrik"};
-  const std::string text = refusal([&] { average(s, p, o); });
+  const std::string text = refusal_of([&] { average(s, p, o); });
   EXPECT_EQ(text.substr(0, 44), "unknown quantity \"fabrik\"; known: sigma, sig");
   EXPECT_NE(text.find("did you mean \"fabric\"?"), std::string::npos);
   o.quantities.clear();
-  EXPECT_EQ(refusal([&] { balance_residual(s, p, o, 0.1, 3); }),
+  EXPECT_EQ(refusal_of([&] { balance_residual(s, p, o, 0.1, 3); }),
             "differences of order 3 for the balance; known: 2, 4");
-  EXPECT_EQ(refusal([&] { cut_points(0, 1, 3, {}); }), "horizontal cuts without heights");
+  EXPECT_EQ(refusal_of([&] { cut_points(0, 1, 3, {}); }), "horizontal cuts without heights");
   dem::Snapshot flat = layer(2, 12, 2);
   AverageOptions one;
   one.width = 1;
-  EXPECT_EQ(refusal([&] { balance_table(flat, one); }),
+  EXPECT_EQ(refusal_of([&] { balance_table(flat, one); }),
             "the packing is nowhere four mean diameters high; too low to compare averagings on "
             "(without --balance it is averaged all the same)");
 }

@@ -132,7 +132,7 @@ TEST(Keys, ThePagesInDocsAreThoseOfTheDeclarations) {
       << "regenerate: grainfield keys --summary --markdown > docs/summary-keys.md";
 }
 
-// Of models with finite elements the shipped cases say it (shipped.h).
+// The shipped cases say it of models with finite elements (shipped.h).
 TEST(SummaryKeys, EveryFigureOfAClosedModelHasAnEntry) {
   const std::map<std::string, continuum::Settings> needed{
       {"osl", {{"mu", "-0.3"}}}, {"orthotropic_layer", {{"nu_xy", "0.3"}}}};

@@ -161,7 +161,7 @@ TEST(IdleKeys, AreNamedWithLineAndRemedy) {
               ElementsAre(HasSubstr("x.toml:4: source.height: has no effect, only with "
                                     "source.kind = point, source.above = 0.0 (now \"line\")")));
   EXPECT_THAT(read(text, {"source.kind=point"}).without_effect, IsEmpty());
-  // Of a list one of the values is enough; a key of a key without effect has none either.
+  // One of the values of a list is enough; a key of a key without effect has none either.
   EXPECT_THAT(read(testing::tiny_case(), {"average.kernel=gaussian"}).without_effect, IsEmpty());
   EXPECT_THAT(
       read(testing::tiny_case(), {"average.methods=[\"area_exact\"]", "average.kernel=gaussian"})

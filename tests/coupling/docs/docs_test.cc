@@ -9,7 +9,7 @@
 #include <set>
 
 #include "coupling/base/version.h"
-#include "coupling/heap/pile_frame.h"
+#include "coupling/specimen/pile_frame.h"
 #include "coupling/tasks/measured_share.h"
 #include "tests/coupling/program.h"
 

@@ -46,7 +46,7 @@ Page read_and_run(const Folder& folder, const std::string& page, const std::stri
       if (kind == " ") out.shown += block;
       if (kind == "python") out.python += block;
       if (kind.starts_with("csv ")) folder.write(kind.substr(4), block);
-      // Of a block's first line the language; its last line has none.
+      // The language stands in a block's first line; its last line has none.
       kind = kind.empty() ? (line.size() > 3 ? line.substr(3) : " ") : "";
       block.clear();
     } else if (!kind.empty()) {

@@ -19,7 +19,7 @@ const std::vector<Room>& rooms() {
       {"import", {"averaging", "base"}},
       {"judge", {"statistics"}},
       {"compare", {"averaging", "judge", "statistics"}},
-      {"heap", {"averaging", "base", "statistics"}},
+      {"specimen", {"averaging", "base", "statistics"}},
       {"store", {"base"}},
       {"result", {"base", "compare", "judge", "store"}},
       {"elastic_constants", {"averaging", "base", "result", "statistics"}},
@@ -31,7 +31,7 @@ const std::vector<Room>& rooms() {
        {"averaging", "base", "case", "compare", "export", "judge", "report", "result", "statistics",
         "store", "structure"}},
       {"observe",
-       {"averaging", "base", "case", "compare", "heap", "import", "models", "report", "result",
+       {"averaging", "base", "case", "compare", "specimen", "import", "models", "report", "result",
         "run", "store"}},
       {"fit",
        {"averaging", "case", "compare", "judge", "models", "observe", "report", "result", "run",
@@ -42,13 +42,13 @@ const std::vector<Room>& rooms() {
        {"averaging", "base", "case", "compare", "elastic_constants", "fit", "judge", "models",
         "observe", "report", "result", "run"}},
       {"studies/pile",
-       {"averaging", "base", "case", "compare", "fit", "heap", "models", "observe", "report",
+       {"averaging", "base", "case", "compare", "fit", "specimen", "models", "observe", "report",
         "result", "run", "statistics"}},
       {"studies/pile_fields",
-       {"averaging", "base", "case", "elastic_constants", "heap", "judge", "report", "result",
+       {"averaging", "base", "case", "elastic_constants", "specimen", "judge", "report", "result",
         "run", "statistics", "store", "strain", "structure", "studies/pile"}},
       {"studies/cone",
-       {"averaging", "base", "case", "heap", "judge", "models", "observe", "report", "result",
+       {"averaging", "base", "case", "specimen", "judge", "models", "observe", "report", "result",
         "run", "studies/pile", "studies/sample/simulation"}},
       {"studies/lattice_pile", {"case", "compare", "models", "report", "result", "run"}},
       {"studies/sample",
@@ -60,11 +60,11 @@ const std::vector<Room>& rooms() {
       {"studies/hard_to_soft", {"case", "report", "run"}},
       {"studies/solvers", {"averaging", "case", "models", "run", "studies/point_load"}},
       {"studies/wedge",
-       {"averaging", "case", "heap", "judge", "models", "report", "result", "run", "store",
+       {"averaging", "case", "specimen", "judge", "models", "report", "result", "run", "store",
         "studies/point_load"}},
       {"studies", {"case"}},
       {"tasks",
-       {"averaging", "base", "case", "compare", "fit", "heap", "import", "judge", "models",
+       {"averaging", "base", "case", "compare", "fit", "specimen", "import", "judge", "models",
         "observe", "result", "run", "store", "strain", "studies/pile", "studies/point_load"}},
       {"app",
        {"averaging", "base", "case", "export", "import", "judge", "models", "result", "run",
@@ -95,7 +95,7 @@ TEST(Rooms, OfRunsCasesAndPagesKnowNoStudyByName) {
   const fs::path root = GRAINFIELD_SOURCES;
   int files = 0;
   for (const char* room :
-       {"case", "run", "report", "models", "result", "store", "averaging", "heap"}) {
+       {"case", "run", "report", "models", "result", "store", "averaging", "specimen"}) {
     for (const auto& entry : fs::directory_iterator(root / "coupling" / room)) {
       std::ifstream in(entry.path());
       const std::string text{std::istreambuf_iterator<char>(in), {}};

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "dem/computation_failed.h"
+#include "dem/shared/computation_failed.h"
 #include "tests/coupling/check_scene.h"
 
 namespace grainfield::coupling {
@@ -190,7 +190,7 @@ void try_ten_steps(const Study& study, const std::string& file, const Overrides&
       EXPECT_TRUE(finite(run->progress()));
     }
     ++counts.run;
-  } catch (const dem::ComputationFailed& e) {
+  } catch (const ComputationFailed& e) {
     EXPECT_STRNE(e.what(), "");
     ++counts.failed;
   }

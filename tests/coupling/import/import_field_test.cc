@@ -35,7 +35,7 @@ std::string measured(std::uint64_t seed, double factor = 1) {
     const Eigen::Vector3d stress = field.stress(x, -kHeight);
     for (const auto& [name, value] : {std::pair{"pressure", -stress[1]}, {"shear", stress[2]}}) {
       const double error = 0.02 * std::max(std::fabs(value), 20.0);
-      // Of unit variance, nearly normal.
+      // An error of unit variance, nearly normal.
       double off = -6;
       for (int n = 0; n < 12; ++n) off += random.uniform(0, 1);
       out += fmt::format("{},{},{},{}\n", 1000 * x, name, factor * (value + error * off) / 1000,
@@ -210,7 +210,7 @@ TEST(ImportField, GivesTheConstantsOfAnExperimentBack) {
   ASSERT_EQ(out.code, 0) << out.err;
   const Summary compare = read_summary(folder / "compare/summary.json");
   EXPECT_LT(figure(compare, "compare.osl.chi2_per_dof"), 2);
-  // Of 25 values 1.3 is as far from 1 as one standard deviation of a true model's.
+  // A mean of 25 values of 1.3 is as far from 1 as one standard deviation of a true model's.
   EXPECT_GT(figure(compare, "compare.bcc.chi2_per_dof"), 2.5);
   EXPECT_THAT(std::get<std::string>(compare.at("verdict.sentence")), HasSubstr("misfit"));
   EXPECT_GT(figure(compare, "verdict.position_error"), 0) << "by the errors that came with it";

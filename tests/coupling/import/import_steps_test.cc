@@ -73,7 +73,7 @@ TEST_F(ImportSteps, ContinuedRunsHaveAllSteps) {
   const std::string a = write("a.dump", first(0) + first(100)),
                     b = write("b.dump", first(100) + first(200));
   EXPECT_EQ(contacts(read({g, h, a, b}, true)), (Counts{2, 2, 2}));
-  // Of two processors each.
+  // Two processors' files each.
   const std::string c = write("c.dump", second(0) + second(100)),
                     d = write("d.dump", second(100) + second(200));
   EXPECT_EQ(contacts(read({g, h, a, b, c, d}, true)), (Counts{3, 3, 3}));

@@ -7,6 +7,7 @@
 #include "coupling/import/import.h"
 #include "coupling/import/step_names.h"
 #include "tests/coupling/program.h"
+#include "tests/refusal.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -54,12 +55,7 @@ dem::Snapshot read(const ImportOptions& options) {
 }
 
 std::string refusal(const ImportOptions& options) {
-  try {
-    read(options);
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "";
+  return refusal_of([&] { read(options); });
 }
 
 // The lowest grain is pressed down by 1 N, the highest is held up by 2 N.
@@ -252,7 +248,7 @@ TEST(ImportVtkData, FilesWithoutAGrainInCommonArePiecesOfOneStep) {
                                             {"c_1.vtp", false, {}}});
   EXPECT_EQ(pieces.steps, Steps(4));
   EXPECT_THAT(pieces.notes, ::testing::ElementsAre(HasSubstr("are pieces of one step")));
-  // Of two numbers that is the step within which no grain is there twice.
+  // The step is that of two numbers within which no grain is there twice.
   const std::vector<NamedFile> both{{"g_0_100.vtp", true, low},
                                     {"g_1_100.vtp", true, high},
                                     {"g_0_200.vtp", true, low},

@@ -102,7 +102,7 @@ TEST_F(ImportWalls, ForcesThatDoNotFitThePlaces) {
                                  "force (friction above 1): do ids, axes and signs")));
 }
 
-// Of a grain that touches another through both sides of a narrow cell.
+// A grain that touches another through both sides of a narrow cell.
 TEST_F(ImportWalls, TheForceTellsTheSideOfANarrowCell) {
   const std::string g = write("n.csv", "id,x,y,radius,mass\n1,0.0,0,0.01,1\n2,0.0199,0,0.01,1\n");
   const auto force = [&](const char* fx) {

@@ -19,9 +19,9 @@ namespace {
 using dem::Vec3;
 using ::testing::HasSubstr;
 
-// Of the largest: sums of some dozens of numbers of 17 digits, in another order.
+// Share of the largest: sums of some dozens of numbers of 17 digits, in another order.
 constexpr double kDigits = 1e-13;
-// Of the largest: each number has six digits.
+// Share of the largest: each number has six digits.
 constexpr double kSixDigits = 1e-4;
 
 class YadeBox : public ::testing::Test {

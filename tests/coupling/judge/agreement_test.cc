@@ -19,7 +19,7 @@ namespace grainfield::coupling {
 namespace {
 
 constexpr int kPlaces = 30, kComponents = 3;
-// Of the suite, and of the draws that docs/statistics.md tells powers of.
+// Trials of the suite, and of the draws that docs/statistics.md tells powers of.
 constexpr int kTrials = 1000, kManyTrials = 20000;
 
 // Three components that are tied at a place (0.5), correlated over `length` places, and of a

@@ -123,11 +123,11 @@ TEST(Shape, EqualTopsAreTwoPeaksOnlyWithADentBetween) {
 }
 
 TEST(Shape, Refuses) {
-  EXPECT_EQ(refusal([] { profile_shape(axis(4, 1), VectorXd::Zero(3), {}); }),
+  EXPECT_EQ(refusal_of([] { profile_shape(axis(4, 1), VectorXd::Zero(3), {}); }),
             "a profile of 4 positions, 3 values and 0 errors");
-  EXPECT_EQ(refusal([] { profile_shape(-axis(3, 1), VectorXd::Zero(3), {}); }),
+  EXPECT_EQ(refusal_of([] { profile_shape(-axis(3, 1), VectorXd::Zero(3), {}); }),
             "a profile's positions must ascend; -0 m follows 1 m");
-  EXPECT_EQ(refusal([] { profile_shape(axis(3, 1), VectorXd::Constant(3, NAN), {}); }),
+  EXPECT_EQ(refusal_of([] { profile_shape(axis(3, 1), VectorXd::Constant(3, NAN), {}); }),
             "a profile has 0 values; its shape needs at least 3");
 }
 

@@ -366,27 +366,27 @@ TEST(Compare, SummaryHasTheAgreedKeys) {
 
 TEST(Compare, Refuses) {
   const Scene s = scene(2, 1, 0.1);
-  EXPECT_EQ(refusal([&] { compare({}, s.models, scale_of_load(1, 1)); }),
+  EXPECT_EQ(refusal_of([&] { compare({}, s.models, scale_of_load(1, 1)); }),
             "nothing to compare: no profile");
-  EXPECT_EQ(refusal([&] { compare(s.profiles, {}, scale_of_load(1, 1)); }),
+  EXPECT_EQ(refusal_of([&] { compare(s.profiles, {}, scale_of_load(1, 1)); }),
             "nothing to compare with: no model");
   Scene outside = s;
   for (ModelProfiles& m : outside.models) {
     for (VectorXd& v : m.values) v.setConstant(NAN);
   }
   EXPECT_EQ(
-      refusal([&] { compare(outside.profiles, outside.models, scale_of_load(1, 1)); }),
+      refusal_of([&] { compare(outside.profiles, outside.models, scale_of_load(1, 1)); }),
       "nothing to compare on " + s.profiles.front().name +
           (s.profiles.size() > 1 ? " and the others" : "") +
           ": no point has a value both of the simulation and of a model; choose heights inside "
           "both");
   Scene broken = s;
   broken.models[0].values[0].resize(7);
-  EXPECT_EQ(refusal([&] { compared(broken); }),
+  EXPECT_EQ(refusal_of([&] { compared(broken); }),
             "model \"flamant\" has 7 values on profile \"depth 0.1 m\" of 121 points");
   broken = s;
   broken.profiles[0].mean.setConstant(NAN);
-  EXPECT_EQ(refusal([&] { compared(broken); }),
+  EXPECT_EQ(refusal_of([&] { compared(broken); }),
             "profile \"depth 0.1 m\" has no value: no point has enough grains around it; take a "
             "wider and deeper packing, or a lower average.width_diameters");
 }

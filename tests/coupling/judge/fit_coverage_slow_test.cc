@@ -22,7 +22,7 @@ std::vector<FitModel> seen(const std::vector<FitModel>& models, const FitData& d
   return out;
 }
 
-// Of 100 ensembles of 8 piles, with noise as grains have it, the 95 % intervals hold the truth in
+// The 95 % intervals of 100 ensembles of 8 piles, with noise as grains have it, hold the truth in
 // at least 88, of 20 in at least 16: three standard deviations of the count below 95 %, and a
 // little. Three constants fall short of it (docs/fits.md): the core's angle where all constants are
 // free holds in 80 of 100, the flanks' in 88, and the ray of a kink in 13 of 20.
@@ -109,7 +109,7 @@ TEST(Fit, CoverageOfModelsThatDoNotHold) {
   }
 }
 
-// Of 100 ensembles at least 95 name the model that made them; with an effect far below the noise
+// At least 95 of 100 ensembles name the model that made them; with an effect far below the noise
 // hardly any does.
 TEST(Fit, SelectionNamesTheModelThatMadeTheData) {
   const auto all = heap_models({kSlope, kRhoG, kHeight});

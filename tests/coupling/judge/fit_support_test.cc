@@ -20,7 +20,7 @@ JudgedModel score(double heights, double behind, double error) {
   return s;
 }
 
-// Of models that are far apart.
+// Marks of models that are far apart.
 void mark(std::vector<JudgedModel>& ranking) {
   mark_distinguishable(ranking, std::vector<double>(ranking.size(), 1e9), 2);
 }

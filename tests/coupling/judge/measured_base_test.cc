@@ -151,7 +151,7 @@ TEST(MeasuredBase, MistakesAreNamed) {
       HasSubstr("has 1 places on the base with a pressure and a shear, allowed: 5 or more"));
 }
 
-// Of the line model at 32.6 degrees the shear is straight up to its bend at 0.184 of the base; a
+// The line model's shear at 32.6 degrees is straight up to its bend at 0.184 of the base; a
 // window that ends before it sees nothing but a line, whatever comes after.
 TEST(MeasuredBase, TheMiddleOfTheShearEndsBeforeItsBend) {
   BaseProfile base;

@@ -1,6 +1,6 @@
 // Numbers of realizations foreseen from 8, against what is needed (docs/verdict.md):
 //   build/release/tests/coupling_judge power_long_test | grep '^|'
-// Of a real ensemble the field that GRAINFIELD_ENSEMBLE names, with the models of
+// The field of a real ensemble that GRAINFIELD_ENSEMBLE names, with the models of
 // GRAINFIELD_MODELS, parted by blanks:
 //   xz -dkc docs/reproduction/states/pile-rest-300-awake.h5.xz > piles.h5
 //   grainfield average piles.h5 --frame heap --grid 41x21 --quantities sigma -o field.h5

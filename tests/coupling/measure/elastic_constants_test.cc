@@ -17,7 +17,6 @@ namespace {
 
 using test::make_increments;
 using test::Recipe;
-using test::refusal_text;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -210,7 +209,7 @@ TEST(ElasticConstants, FieldsBecomeIncrements) {
   put(strain, "strain_xx", 6);
   put(strain, "strain_yy", 7);
   Increments data;
-  EXPECT_EQ(refusal_text([&] { data.add(stress, strain); }),
+  EXPECT_EQ(refusal_of([&] { data.add(stress, strain); }),
             "the field of strain has no column \"strain_xy\"");
   EXPECT_EQ(data.realizations(), 0);
   put(strain, "strain_xy", 8);
@@ -218,10 +217,10 @@ TEST(ElasticConstants, FieldsBecomeIncrements) {
   EXPECT_EQ(data.stress[0].row(1), Eigen::RowVector3d(1, 2, 4));
   EXPECT_EQ(data.strain[0].row(0), Eigen::RowVector3d(6, 7, 8));
   stress.points(0, 0) = 9;
-  EXPECT_EQ(refusal_text([&] { data.add(stress, strain); }),
+  EXPECT_EQ(refusal_of([&] { data.add(stress, strain); }),
             "stress and strain are on different points (2 and 2)");
   strain.points = stress.points;
-  EXPECT_EQ(refusal_text([&] { data.add(stress, strain); }),
+  EXPECT_EQ(refusal_of([&] { data.add(stress, strain); }),
             "realization 1 is on other points than the first one");
 }
 
@@ -234,7 +233,7 @@ TEST(ElasticConstants, Refusals) {
         Locality where = everywhere(data.points);
         ElasticOptions o = few_draws();
         change(d, where, o);
-        return refusal_text([&] { isotropic_constants(d, where, o); });
+        return refusal_of([&] { isotropic_constants(d, where, o); });
       };
   EXPECT_EQ(refusal([](auto& d, auto&, auto&) { d = {}; }),
             "elastic constants need at least one realization");
@@ -248,11 +247,11 @@ TEST(ElasticConstants, Refusals) {
             "a weight of the elastic fit is negative or nan");
   EXPECT_EQ(refusal([](auto&, auto&, auto& o) { o.bootstrap.level = 0; }),
             "bootstrap level is 0; it must be above 0 and below 1");
-  EXPECT_EQ(refusal_text([&] {
+  EXPECT_EQ(refusal_of([&] {
               locality(data.points, {0, 0}, "lucky", 1);
             }),
             "unknown kernel \"lucky\"; known: lucy, gaussian, heaviside; did you mean \"lucy\"?");
-  EXPECT_EQ(refusal_text([&] {
+  EXPECT_EQ(refusal_of([&] {
               locality(data.points, {0, 0}, "lucy", -1);
             }),
             "kernel width is -1 m; it must be positive and finite");

@@ -13,7 +13,6 @@ namespace {
 
 using test::make_increments;
 using test::Recipe;
-using test::refusal_text;
 
 ElasticOptions few_draws(int draws = 50) {
   ElasticOptions o;

@@ -19,7 +19,6 @@ namespace {
 
 using test::columns;
 using test::press;
-using test::refusal;
 using test::turned;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -47,7 +46,7 @@ TEST(ForceChains, LoadedColumns) {
   EXPECT_EQ(force_chains(s, options).chains.size(), 0u);
   EXPECT_TRUE(std::isnan(force_chains(s, options).mean_length));
   options.largest_turn_deg = 0;
-  EXPECT_THAT(refusal([&] { force_chains(s, options); }),
+  EXPECT_THAT(refusal_of([&] { force_chains(s, options); }),
               HasSubstr("found a largest turn of 0 degrees"));
   EXPECT_EQ(force_chains(dem::Snapshot()).chains.size(), 0u);
 }

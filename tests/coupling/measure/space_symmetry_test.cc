@@ -15,7 +15,7 @@ using Eigen::Matrix3d;
 using Six = Eigen::Matrix<double, 6, 1>;
 using Stiffness = Eigen::Matrix<double, 6, 6>;
 
-// Of strains xx, yy, zz, and twice yz, xz, xy.
+// The stress of strains xx, yy, zz, and twice yz, xz, xy.
 Matrix3d stress_of(const Stiffness& c, const Matrix3d& e) {
   Six v;
   v << e(0, 0), e(1, 1), e(2, 2), 2 * e(1, 2), 2 * e(0, 2), 2 * e(0, 1);

@@ -71,7 +71,7 @@ dem::Snapshot told(dem::Snapshot s, const std::string& text, std::array<bool, 3>
 dem::Snapshot counted(const State& state) { return told(state.s, "counted", {true, true, true}); }
 dem::Snapshot untold(const State& state) { return told(state.s, "untold", {}); }
 
-// Of the copy that was in the cell before.
+// The displacement of the copy that was in the cell before.
 Vec3 displacement_of(const State& a, const State& b, std::size_t g) {
   const Eigen::Matrix3d between = b.gradient * a.gradient.inverse();
   const auto& n = a.s.grains[g].image;

@@ -20,7 +20,6 @@ namespace grainfield::coupling {
 namespace {
 
 using test::press;
-using test::refusal;
 using test::turned;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -114,7 +113,7 @@ TEST(TensorAxes, ColumnsOfAField) {
   EXPECT_NEAR(at("angle_sigma_fabric", 1), 45, 1e-12);
   EXPECT_TRUE(std::isnan(at("angle_sigma_fabric", 2)));
   EXPECT_EQ(field.find("sigma_deviator")->unit, "N/m");
-  EXPECT_THAT(refusal([&] { add_tensor_columns(field, "strain", MajorAxis::largest); }),
+  EXPECT_THAT(refusal_of([&] { add_tensor_columns(field, "strain", MajorAxis::largest); }),
               HasSubstr("no column strain_xx; it has: sigma_xx, "));
 }
 
@@ -138,7 +137,7 @@ TEST(Yield, PlasticFlankIsAtTheLimit) {
   EXPECT_NEAR(field.find("mohr_coulomb")->value[0], 4.0 / 16 - 0.25, 1e-15);
   EXPECT_NEAR(field.find("mobilised_friction")->value[1], 30, 1e-12);
   EXPECT_TRUE(std::isnan(field.find("mohr_coulomb")->value[2]));
-  EXPECT_THAT(refusal([&] { add_yield_columns(field, 90); }), HasSubstr("found 90 degrees"));
+  EXPECT_THAT(refusal_of([&] { add_yield_columns(field, 90); }), HasSubstr("found 90 degrees"));
 }
 
 TEST(Fabric, OfLattices) {
@@ -178,7 +177,7 @@ TEST(SizeFactor, EqualGrainsAndTwoSizes) {
   star.contacts.clear();
   EXPECT_TRUE(std::isnan(size_factor(star).measured));
   star.grains.clear();
-  EXPECT_THAT(refusal([&] { size_factor(star); }), HasSubstr("no free grain"));
+  EXPECT_THAT(refusal_of([&] { size_factor(star); }), HasSubstr("no free grain"));
 }
 
 TEST(SizeFactor, TheoryForTwoSizesAndUniform) {
@@ -237,7 +236,7 @@ TEST(BaseForces, CarryTheWeight) {
   }
   dem::Snapshot loose;
   loose.grains.push_back(test::disk(1, 0, 0, 1));
-  EXPECT_THAT(refusal([&] { base_forces(loose); }), HasSubstr("no free grain touches the base"));
+  EXPECT_THAT(refusal_of([&] { base_forces(loose); }), HasSubstr("no free grain touches the base"));
 }
 
 TEST(Histogram, CountsAndDensity) {
@@ -249,7 +248,7 @@ TEST(Histogram, CountsAndDensity) {
   EXPECT_NEAR(h.density.sum() * 0.5, 5.0 / 7, 1e-15);
   EXPECT_NEAR(h.error[1], std::sqrt(2) / (7 * 0.5), 1e-15);
   EXPECT_EQ(h.centres()[3], 1.75);
-  EXPECT_THAT(refusal([&] { density_histogram(numbers, 2, 2, 3); }),
+  EXPECT_THAT(refusal_of([&] { density_histogram(numbers, 2, 2, 3); }),
               HasSubstr("3 bins from 2 to 2"));
   // An exponential sample: every bin within five standard deviations of the exact share.
   std::mt19937_64 random(5);
@@ -303,7 +302,7 @@ TEST(GrainAxes, OfRectangles) {
   // Three along, two across.
   EXPECT_NEAR(grain_axes(s).order, 0.2, 1e-12);
   s.dim = 3;
-  EXPECT_THAT(refusal([&] { grain_axes(s); }), HasSubstr("is 3D"));
+  EXPECT_THAT(refusal_of([&] { grain_axes(s); }), HasSubstr("is 3D"));
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "coupling/store/field_io.h"
-#include "dem/image/image.h"
+#include "dem/checkpoint/checkpoint.h"
 #include "tests/damaged_files.h"
 
 namespace grainfield::coupling {
@@ -32,7 +32,7 @@ Field sample() {
 }
 
 std::string bits_of(const std::string& file) {
-  dem::ImageWriter w;
+  dem::CheckpointWriter w;
   const auto put = [&](const auto& matrix) {
     w.put(static_cast<long>(matrix.rows()));
     for (Eigen::Index k = 0; k < matrix.size(); ++k) w.put(matrix(k));

@@ -10,6 +10,7 @@
 
 #include "coupling/store/atomic_file.h"
 #include "tests/coupling/program.h"
+#include "tests/refusal.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -17,16 +18,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::fs::exists;
-
-template <class Work>
-std::string refusal(Work work) {
-  try {
-    work();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "";
-}
 
 // Name and text of what stands in the folder, without the list of results.
 std::map<std::string, std::string> found(const testing::Folder& folder,
@@ -123,12 +114,12 @@ TEST(OutputFolder, WhatIsInTheWayIsSeenBeforeAnythingGoes) {
   const testing::Folder folder;
   publish(folder, {{"summary.json", "old"}, {"x.csv", "old"}});
   folder.write("out/member", "mine");
-  EXPECT_THAT(refusal([&] {
+  EXPECT_THAT(refusal_of([&] {
                 publish(folder, {{"member/y.csv", "new"}});
               }),
               HasSubstr("out/member: cannot write there: "));
   testing::fs::create_directory(folder / "out/z.csv");
-  EXPECT_THAT(refusal([&] {
+  EXPECT_THAT(refusal_of([&] {
                 publish(folder, {{"z.csv", "new"}});
               }),
               HasSubstr("out/z.csv: is in the way of a result"));
@@ -142,7 +133,7 @@ TEST(OutputFolder, AFileOfTheUsersIsNotReplaced) {
   testing::fs::create_directory(folder / "out");
   folder.write("out/report.html", "mine");
   const auto again = [&] { publish(folder, {{"report.html", "new"}, {"x.csv", "new"}}); };
-  EXPECT_THAT(refusal(again),
+  EXPECT_THAT(refusal_of(again),
               AllOf(HasSubstr("out/report.html: is no result of an earlier command"),
                     HasSubstr("move it, or name another folder with -o")));
   EXPECT_EQ(found(folder), (Files{{"report.html", "mine"}}));
@@ -151,7 +142,7 @@ TEST(OutputFolder, AFileOfTheUsersIsNotReplaced) {
   again();  // what was published before is ours
   EXPECT_EQ(found(folder), (Files{{"report.html", "new"}, {"x.csv", "new"}}));
   folder.write("out/y.csv", "mine");
-  EXPECT_THAT(refusal([&] {
+  EXPECT_THAT(refusal_of([&] {
                 publish(folder, {{"y.csv", "new"}});
               }),
               HasSubstr("out/y.csv: is no result"));
@@ -179,16 +170,16 @@ TEST(OutputFolder, ResultsOfVersionsWithoutAListAreReplaced) {
 
 TEST(OutputFolder, NamesOfFilesAreNoFolders) {
   const testing::Folder folder;
-  EXPECT_THAT(refusal([&] { OutputFolder(folder / "table.csv", "structure"); }),
+  EXPECT_THAT(refusal_of([&] { OutputFolder(folder / "table.csv", "structure"); }),
               AllOf(HasSubstr("what is written is a folder"), HasSubstr("table")));
   EXPECT_FALSE(exists(folder / "table.csv"));
-  EXPECT_EQ(refusal([&] { OutputFolder(folder / "run.2", "run"); }), "");
+  EXPECT_EQ(refusal_of([&] { OutputFolder(folder / "run.2", "run"); }), "accepted");
 }
 
 TEST(OutputFolder, WhatIsNoFolderIsCalledByItsKind) {
   const testing::Folder folder;
   const auto open = [&](const std::string& name) {
-    return refusal([&] { const OutputFolder out(name, "grainfield test"); });
+    return refusal_of([&] { const OutputFolder out(name, "grainfield test"); });
   };
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
   testing::fs::create_symlink("nowhere", folder / "link");
@@ -228,16 +219,16 @@ TEST(OutputFolder, ResultsThatAreInputsAreNotReplaced) {
   const testing::Folder folder;
   publish(folder, {{"snapshots.h5", "grains"}});
   OutputFolder out(folder / "out", "grainfield test");
-  EXPECT_THAT(refusal([&] { out.require_other_than({folder / "out/../out/snapshots.h5"}); }),
+  EXPECT_THAT(refusal_of([&] { out.require_other_than({folder / "out/../out/snapshots.h5"}); }),
               HasSubstr("its result snapshots.h5 is an input and would be replaced"));
-  EXPECT_EQ(refusal([&] { out.require_other_than({folder / "elsewhere.h5"}); }), "");
+  EXPECT_EQ(refusal_of([&] { out.require_other_than({folder / "elsewhere.h5"}); }), "accepted");
 }
 
 TEST(OutputFolder, TwoWritersAreOneTooMany) {
   const testing::Folder folder;
   const OutputFolder out(folder / "out", "grainfield run \x1b[2Jcase.toml");
   const std::string why =
-      refusal([&] { const OutputFolder other(folder / "out", "grainfield fit"); });
+      refusal_of([&] { const OutputFolder other(folder / "out", "grainfield fit"); });
   EXPECT_THAT(why, AllOf(HasSubstr("out: in use by process " + std::to_string(getpid()) + " on "),
                          HasSubstr("(grainfield run \\x1b[2Jcase.toml); wait for it")));
 }

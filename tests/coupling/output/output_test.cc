@@ -17,9 +17,10 @@
 #include "coupling/store/atomic_file.h"
 #include "coupling/store/field_io.h"
 #include "coupling/store/vtu.h"
-#include "dem/snapshot/hdf5_file.h"
+#include "dem/hdf5/file.h"
 #include "tests/coupling/averaging_scene.h"
 #include "tests/coupling/heap_scene.h"
+#include "tests/refusal.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -45,14 +46,7 @@ class Output : public testing::Test {
     out << in.rdbuf();
     return out.str();
   }
-  static std::string refusal(const std::function<void()>& act) {
-    try {
-      act();
-    } catch (const std::invalid_argument& e) {
-      return e.what();
-    }
-    return "nothing thrown";
-  }
+
   fs::path folder_;
 };
 
@@ -88,13 +82,13 @@ TEST_F(Output, AtomicFileAppearsOnCommitOnly) {
 }
 
 TEST_F(Output, AtomicFileRefusesWhereItCannotWrite) {
-  EXPECT_EQ(refusal([&] { write_text_file(at("no/a.txt"), ""); }),
+  EXPECT_EQ(refusal_of([&] { write_text_file(at("no/a.txt"), ""); }),
             "cannot write " + at("no/a.txt") + ": " + at("no") + " is not a folder");
-  EXPECT_EQ(refusal([&] { write_text_file(folder_.string(), ""); }),
+  EXPECT_EQ(refusal_of([&] { write_text_file(folder_.string(), ""); }),
             "cannot write " + folder_.string() + ": it is a folder");
   if (geteuid() != 0) {
     fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
-    EXPECT_THAT(refusal([&] { write_text_file(at("a.txt"), ""); }), HasSubstr("no permission"));
+    EXPECT_THAT(refusal_of([&] { write_text_file(at("a.txt"), ""); }), HasSubstr("no permission"));
     fs::permissions(folder_, fs::perms::owner_all);
   }
 }
@@ -111,17 +105,17 @@ TEST_F(Output, LinksAreFollowed) {
   write_text_file(at("dangling"), "there");
   EXPECT_EQ(text(at("later.txt")), "there");
   fs::create_symlink("circle", at("circle"));
-  EXPECT_THAT(refusal([&] { write_text_file(at("circle"), ""); }),
+  EXPECT_THAT(refusal_of([&] { write_text_file(at("circle"), ""); }),
               HasSubstr("cannot write " + at("circle") + ": "));
 }
 
 TEST_F(Output, WhatIsNoFileIsNotReplaced) {
-  EXPECT_EQ(refusal([&] { write_text_file("/dev/null", ""); }),
+  EXPECT_EQ(refusal_of([&] { write_text_file("/dev/null", ""); }),
             "cannot write /dev/null: it is a device");
   fs::create_symlink("/dev/full", at("link"));
-  EXPECT_THAT(refusal([&] { write_text_file(at("link"), ""); }), HasSubstr("it is a device"));
+  EXPECT_THAT(refusal_of([&] { write_text_file(at("link"), ""); }), HasSubstr("it is a device"));
   ASSERT_EQ(mkfifo(at("pipe").c_str(), 0600), 0);
-  EXPECT_THAT(refusal([&] { write_text_file(at("pipe"), ""); }), HasSubstr("it is a pipe"));
+  EXPECT_THAT(refusal_of([&] { write_text_file(at("pipe"), ""); }), HasSubstr("it is a pipe"));
   EXPECT_TRUE(fs::is_fifo(at("pipe")));
 }
 
@@ -137,7 +131,7 @@ TEST_F(Output, LongNamesHaveRoomForATemporaryOne) {
   const std::string name(250, 'n');
   write_text_file(at(name), "x");
   EXPECT_EQ(text(at(name)), "x");
-  EXPECT_THAT(refusal([&] { write_text_file(at(std::string(300, 'n')), "x"); }),
+  EXPECT_THAT(refusal_of([&] { write_text_file(at(std::string(300, 'n')), "x"); }),
               HasSubstr("File name too long"));
 }
 
@@ -229,32 +223,32 @@ TEST_F(Output, OldAttributesHaveTheSameNumbers) {
 
 TEST_F(Output, FieldReaderNamesWhatIsWrong) {
   const std::string file = at("fields.h5");
-  EXPECT_EQ(refusal([&] { read_field(file, "map"); }), file + ": no such file");
+  EXPECT_EQ(refusal_of([&] { read_field(file, "map"); }), file + ": no such file");
   write_fields(file, {{"map", sample(true)}, {"base", sample(false)}});
-  EXPECT_EQ(refusal([&] { read_field(file, "mop"); }),
+  EXPECT_EQ(refusal_of([&] { read_field(file, "mop"); }),
             file + ": unknown field \"mop\"; known: base, map; did you mean \"map\"?");
   const std::string whole = text(file);
   std::ofstream(at("cut.h5"), std::ios::binary) << whole.substr(0, whole.size() / 2);
-  EXPECT_EQ(refusal([&] { read_field(at("cut.h5"), "map"); }),
+  EXPECT_EQ(refusal_of([&] { read_field(at("cut.h5"), "map"); }),
             at("cut.h5") + ": the HDF5 file is truncated or broken");
   std::ofstream(at("text.h5")) << "hello";
-  EXPECT_THAT(refusal([&] { read_field(at("text.h5"), "map"); }), HasSubstr("not an HDF5 file"));
+  EXPECT_THAT(refusal_of([&] { read_field(at("text.h5"), "map"); }), HasSubstr("not an HDF5 file"));
 }
 
 TEST_F(Output, FieldWriterRefusesAndLeavesNothing) {
-  EXPECT_THAT(refusal([&] {
+  EXPECT_THAT(refusal_of([&] {
                 write_fields(at("f.h5"), {{"a/b", sample(true)}});
               }),
               HasSubstr("\"a/b\" cannot name a field"));
   Field f = sample(true);
   f.nx = 5;
-  EXPECT_EQ(refusal([&] {
+  EXPECT_EQ(refusal_of([&] {
               write_fields(at("f.h5"), {{"map", f}});
             }),
             "field \"map\": a grid of 5 x 2 with 6 points");
   f = sample(true);
   f.columns[0].value.resize(3);
-  EXPECT_EQ(refusal([&] {
+  EXPECT_EQ(refusal_of([&] {
               write_fields(at("f.h5"), {{"map", f}});
             }),
             "field \"map\": column \"sigma_yy\" has 3 values and 6 errors for 6 points");
@@ -491,12 +485,12 @@ TEST_F(Output, SummariesOfVersion09ComeBack) {
 
 TEST_F(Output, SummaryReaderNamesWhatIsWrong) {
   const std::string file = at("summary.json");
-  EXPECT_EQ(refusal([&] { read_summary(file); }), file + ": no such file or not readable");
+  EXPECT_EQ(refusal_of([&] { read_summary(file); }), file + ": no such file or not readable");
   write_text_file(file, "{\"a\": ");
-  EXPECT_EQ(refusal([&] { read_summary(file); }),
+  EXPECT_EQ(refusal_of([&] { read_summary(file); }),
             file + ": not a JSON object (broken or truncated)");
   write_text_file(file, "{\"a\": [1]}");
-  EXPECT_EQ(refusal([&] { read_summary(file); }),
+  EXPECT_EQ(refusal_of([&] { read_summary(file); }),
             file + ": \"a\" is array; allowed are numbers and strings");
 }
 

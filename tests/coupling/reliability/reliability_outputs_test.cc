@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Of the name itself, not of what a link points to.
+// The name itself, not what a link points to.
 struct stat stat_of(const std::string& name) {
   struct stat out {};
   EXPECT_EQ(lstat(name.c_str(), &out), 0) << name;

@@ -30,7 +30,7 @@ Start under_mpirun(const std::vector<std::string>& words, const Folder& temporar
   return start;
 }
 
-// Of a process and its threads.
+// The children of a process and its threads.
 std::vector<pid_t> children_of(pid_t parent) {
   std::vector<pid_t> out;
   std::error_code gone;

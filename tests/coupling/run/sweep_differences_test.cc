@@ -30,7 +30,7 @@ Summary member(double repose, double repose_error, double dip, double dip_error,
           {"ensemble.realizations", static_cast<std::int64_t>(n)}};
 }
 
-// Of two layers under 3 and 300 N, whose responses are one in F/h.
+// Two layers under 3 and 300 N, whose responses are one in F/h.
 TEST(MemberProfiles, AreDrawnInEachMembersOwnUnits) {
   Case value;
   value.sweep.key = "load.force";

@@ -11,7 +11,7 @@
 
 #include "coupling/studies/cone/cone_grains.h"
 #include "coupling/studies/cone/simulation.h"
-#include "dem/computation_failed.h"
+#include "dem/shared/computation_failed.h"
 #include "dem/snapshot/contact_changes.h"
 
 namespace grainfield::dem {

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "coupling/studies/pile/simulation.h"
-#include "dem/packing/lattice_pile.h"
+#include "dem/grains/lattice_pile.h"
 #include "tests/coupling/pile_scene.h"
 
 namespace grainfield::dem {

@@ -1,5 +1,5 @@
 // A point source between immobile plates.
-#include "dem/heap/funnel.h"
+#include "dem/pouring/funnel.h"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 
 #include "coupling/studies/pile/pile_checks.h"
 #include "coupling/studies/pile/simulation.h"
-#include "dem/heap/grain_family.h"
+#include "dem/grains/grain_family.h"
 #include "dem/random/random.h"
 #include "dem/shapes/polygon.h"
 #include "tests/coupling/pile_scene.h"

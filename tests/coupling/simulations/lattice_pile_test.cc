@@ -1,5 +1,5 @@
 // Lattice piles: their rows, and the forces on the base against Liffman's closed forms.
-#include "dem/packing/lattice_pile.h"
+#include "dem/grains/lattice_pile.h"
 
 #include <gmock/gmock.h>
 

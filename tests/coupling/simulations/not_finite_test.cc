@@ -5,6 +5,7 @@
 #include "coupling/studies/pile/simulation.h"
 #include "coupling/studies/point_load/simulation.h"
 #include "tests/coupling/pile_scene.h"
+#include "tests/refusal.h"
 
 namespace grainfield::dem {
 namespace {
@@ -37,16 +38,6 @@ std::string failure(const PointLoadSetup& s) {
   return "nothing fails";
 }
 
-template <class Make>
-std::string refusal(Make make) {
-  try {
-    make();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "nothing is refused";
-}
-
 // Their moment of inertia is 0: the first turn is 0 times infinity. No search ever notices.
 TEST(NotFinite, ASpinEndsTheRun) {
   PointLoadSetup s = small_layer();
@@ -68,7 +59,7 @@ TEST(NotFinite, APlaceEndsTheRun) {
   PointLoadSetup s = small_layer();
   s.material.gravity = 1e308;
   EXPECT_THAT(failure(s), HasSubstr("diverged at t = "));
-  // Of several grains one: the engine names it.
+  // One of several grains: the engine names it.
   EngineSettings settings;
   settings.law = LinearLaw{};
   const auto engine = make_engine(settings);
@@ -94,21 +85,22 @@ TEST(NotFinite, StepsThatNobodyCanCountAreRefused) {
   PointLoadSetup layer = small_layer();
   layer.motion.time_step = 1e-300;
   layer.load.ramp_time = 0.05;
-  EXPECT_THAT(refusal([&] { make_point_load_run(layer, 3, 1); }),
+  EXPECT_THAT(refusal_of([&] { make_point_load_run(layer, 3, 1); }),
               AllOf(HasSubstr("load.ramp_time: found "),
                     HasSubstr("steps of 1e-300 s, see motion.time_step)")));
   layer = small_layer();
   layer.load.ramp_time = 1e300;
-  EXPECT_THAT(refusal([&] { make_point_load_run(layer, 3, 1); }),
+  EXPECT_THAT(refusal_of([&] { make_point_load_run(layer, 3, 1); }),
               HasSubstr("load.ramp_time: found 1e+300 s in all, allowed: at most "));
   PileSetup pile = small_pile("point", "disk");
   pile.motion.time_step = 1e-300;
-  EXPECT_THAT(refusal([&] { make_pile_run(pile, 3, 1); }), HasSubstr("source.interval: found "));
+  EXPECT_THAT(refusal_of([&] { make_pile_run(pile, 3, 1); }), HasSubstr("source.interval: found "));
   pile = small_pile("point", "disk");
   pile.change.gravity = {5};
   pile.change.method = "damped";
   pile.change.ramp_time = 1e300;
-  EXPECT_THAT(refusal([&] { make_pile_run(pile, 3, 1); }), HasSubstr("change.ramp_time: found "));
+  EXPECT_THAT(refusal_of([&] { make_pile_run(pile, 3, 1); }),
+              HasSubstr("change.ramp_time: found "));
 }
 
 }  // namespace

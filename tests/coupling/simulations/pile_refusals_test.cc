@@ -7,17 +7,13 @@
 #include "coupling/studies/pile/simulation.h"
 #include "dem/run/common.h"
 #include "tests/coupling/pile_scene.h"
+#include "tests/refusal.h"
 
 namespace grainfield::dem {
 namespace {
 
 std::string refusal(const PileSetup& s) {
-  try {
-    make_pile_run(s, 1, 1);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { make_pile_run(s, 1, 1); });
 }
 
 TEST(Pile, RefusesWhatCannotBe) {

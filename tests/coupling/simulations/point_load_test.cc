@@ -5,10 +5,11 @@
 #include <filesystem>
 
 #include "coupling/studies/point_load/simulation.h"
-#include "dem/packing/packing.h"
+#include "dem/grains/packing.h"
 #include "dem/snapshot/contact_changes.h"
 #include "tests/coupling/pile_scene.h"
 #include "tests/dem/imbalance.h"
+#include "tests/refusal.h"
 
 namespace grainfield::dem {
 namespace {
@@ -174,12 +175,7 @@ TEST(PointLoad, NewtonAgreesWithDampedDynamics) {
 }
 
 std::string refusal(const PointLoadSetup& s) {
-  try {
-    make_point_load_run(s, 1, 1);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { make_point_load_run(s, 1, 1); });
 }
 
 TEST(PointLoad, RefusesWhatCannotBe) {

@@ -10,7 +10,7 @@
 #include "coupling/studies/sample/simulation/path.h"
 #include "coupling/studies/sample/simulation/sample.h"
 #include "coupling/studies/sample/simulation/state.h"
-#include "dem/snapshot/number.h"
+#include "dem/shared/number.h"
 
 namespace grainfield::dem {
 namespace {

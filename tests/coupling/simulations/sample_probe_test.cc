@@ -66,7 +66,7 @@ TEST(SampleProber, FindsTheModuliOfACrystal) {
   setup.rest.max_time = 1e5;
   SampleProber prober(setup);
   std::unique_ptr<Engine> engine = crystal();
-  const std::string before = engine->image();
+  const std::string before = engine->checkpoint();
   const auto make = [] { return make_engine(crystal_settings()); };
   prober.begin(*engine, "first", false);
   for (bool done = false; !done;) {
@@ -74,7 +74,7 @@ TEST(SampleProber, FindsTheModuliOfACrystal) {
     engine->step(steps);
     done = prober.decide(engine, steps, make);
   }
-  EXPECT_EQ(engine->image(), before);
+  EXPECT_EQ(engine->checkpoint(), before);
   const StateProbes found = probes_of(prober.attributes(), "first");
   ASSERT_EQ(found.probes.size(), 6U);
   const double c11 = std::numbers::sqrt2 * kSpring / (2 - kOverlap);
@@ -153,7 +153,7 @@ TEST(SampleProber, SaysThatNothingBearsLoad) {
   setup.rest.max_time = 1e5;
   SampleProber prober(setup);
   std::unique_ptr<Engine> engine = crystal();
-  const std::string before = engine->image();
+  const std::string before = engine->checkpoint();
   prober.begin(*engine, "first", false);
   const long steps = prober.until_due();
   const double time = static_cast<double>(steps) * engine->time_step();
@@ -163,7 +163,7 @@ TEST(SampleProber, SaysThatNothingBearsLoad) {
   const StateProbes found = probes_of(prober.attributes(), "first");
   EXPECT_THAT(found.lacking, ::testing::StartsWith("it bears no load"));
   EXPECT_TRUE(found.probes.empty());
-  EXPECT_EQ(engine->image(), before);
+  EXPECT_EQ(engine->checkpoint(), before);
 }
 
 // A grain that something pulls at does not come to rest: there are no moduli, and it is said why.
@@ -176,7 +176,7 @@ TEST(SampleProber, SaysThatGrainsDoNotRest) {
   setup.rest.max_time = 100;
   SampleProber prober(setup);
   std::unique_ptr<Engine> engine = crystal();
-  const std::string before = engine->image();
+  const std::string before = engine->checkpoint();
   prober.begin(*engine, "first", false);
   AppliedForce force;
   force.id = 7;
@@ -194,7 +194,7 @@ TEST(SampleProber, SaysThatGrainsDoNotRest) {
   EXPECT_THAT(found.lacking,
               ::testing::StartsWith("its grains do not come to rest for a strain of 1e-05"));
   EXPECT_TRUE(found.probes.empty());
-  EXPECT_EQ(engine->image(), before);
+  EXPECT_EQ(engine->checkpoint(), before);
 }
 
 TEST(SampleProber, LeavesThePathAsItWas) {
@@ -236,7 +236,7 @@ TEST(SampleProber, GoesOnFromAnyMoment) {
     run->advance(777);
     if (run->done()) break;
     const bool probing = run->progress().phase == "probe";
-    // Of the probes every second time, of the rest every twentieth.
+    // Every second time in the probes, every twentieth in the rest.
     if (++taken % (probing ? 2 : 20) != 0) continue;
     in_probes += probing;
     run->save(file);

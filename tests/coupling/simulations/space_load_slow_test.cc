@@ -8,11 +8,12 @@
 
 #include "coupling/studies/point_load/simulation.h"
 #include "coupling/studies/point_load/simulation_space.h"
-#include "dem/packing/space_layer.h"
+#include "dem/grains/layer_3d.h"
 #include "dem/run/outlook.h"
 #include "dem/snapshot/contact_changes.h"
 #include "tests/coupling/pile_scene.h"
 #include "tests/dem/imbalance.h"
+#include "tests/refusal.h"
 
 namespace grainfield::dem {
 namespace {
@@ -232,12 +233,7 @@ TEST(SpaceLoad, ResumesToTheSameBitsOnAnyThreads) {
 }
 
 std::string refusal(const PointLoadSetup& s) {
-  try {
-    make_point_load_run(s, 1, 1);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal_of([&] { make_point_load_run(s, 1, 1); });
 }
 
 TEST(SpaceLoad, RefusesWhatCannotBe) {
@@ -321,9 +317,9 @@ TEST(SpaceLayer, ClosePackingsTouchWithoutOverlap) {
       p.stacking = stacking;
       p.floor = floor;
       Random random(1);
-      std::vector<NewGrain> all = space_floor(p, 1, random);
+      std::vector<NewGrain> all = floor_3d(p, 1, random);
       const std::size_t fixed = all.size();
-      for (const NewGrain& g : space_grains(p, 1, random)) all.push_back(g);
+      for (const NewGrain& g : grains_3d(p, 1, random)) all.push_back(g);
       ASSERT_EQ(all.size() - fixed, static_cast<std::size_t>(layer_spheres(p)));
       ASSERT_EQ(static_cast<double>(fixed), floor_spheres(p));
       const auto sides = layer_sides(p);
@@ -352,7 +348,7 @@ TEST(SpaceLayer, CloserLayersStandHigher) {
   PackingSetup p = spheres("close_packed").packing;
   p.spacing = 0.98;
   Random random(1);
-  const std::vector<NewGrain> all = space_grains(p, 1, random);
+  const std::vector<NewGrain> all = grains_3d(p, 1, random);
   const auto sides = layer_sides(p);
   const double d = 2 * p.radius;
   EXPECT_DOUBLE_EQ(sides[0], p.columns * 0.98 * d);
@@ -377,7 +373,7 @@ TEST(SpaceLayer, FccAndHcpDifferInTheThirdLayer) {
   Random random(1);
   const auto offset = [&](const char* stacking) {
     p.stacking = stacking;
-    const auto grains = space_grains(p, 1, random);
+    const auto grains = grains_3d(p, 1, random);
     const std::size_t layer = grains.size() / 3;
     const auto sides = layer_sides(p);
     double least = 1;
@@ -402,7 +398,7 @@ TEST(SpaceLayer, FloorsLeaveNoGap) {
     p.width = 0.1;
     check_packing(p);
     Random random(5), places(6);
-    const std::vector<NewGrain> floor = space_floor(p, 2500, random);
+    const std::vector<NewGrain> floor = floor_3d(p, 2500, random);
     for (int k = 0; k < 3000; ++k) {
       const double x = places.uniform(-0.5, 0.5) * p.width, y = places.uniform(-0.5, 0.5) * p.width;
       bool touches = false;

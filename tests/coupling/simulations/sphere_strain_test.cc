@@ -33,7 +33,7 @@ Snapshot cubic_lattice(const EngineSettings& settings, double overlap) {
   return relax(engine->snapshot(), e, {0, 0, 0}, {}, {}).state;
 }
 
-// Of a Bravais lattice the affine motion is the relaxed one. With the force N of a contact, its
+// The affine motion of a Bravais lattice is the relaxed one. With the force N of a contact, its
 // stiffnesses k_n, k_t and the spacing a, an extension e along x changes sigma_xx by e k_n/a and
 // sigma_yy by e N/a^2 (the area grows), a shear e changes sigma_xy by e (k_t/a - 2 N/a^2).
 TEST(SphereStrain, ACubicLatticeHasTheStiffnessOfItsContacts) {

@@ -12,9 +12,9 @@
 
 #include "coupling/averaging/base.h"
 #include "coupling/averaging/cone.h"
-#include "coupling/heap/cone_windows.h"
 #include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/specimen/cone_windows.h"
 #include "coupling/store/field_io.h"
 #include "dem/random/random.h"
 #include "dem/snapshot/snapshot.h"
@@ -187,7 +187,7 @@ TEST_F(ConeRun, FilesOfOtherConesAreNamed) {
   }
 }
 
-// Of what is there, and of nothing that is not.
+// Warnings of what is there, and of nothing that is not.
 TEST_F(ConeRun, WarnsOfWhatToMind) {
   const std::string again = *folder_ / "wide";
   const Output run =

@@ -15,6 +15,7 @@
 #include "coupling/studies/pile_fields/topic.h"
 #include "tests/coupling/heap_scene.h"
 #include "tests/coupling/program.h"
+#include "tests/refusal.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -79,12 +80,7 @@ double number(const StudyResult& result, const std::string& key) {
 }
 
 std::string refusal(const Case& value, const std::vector<std::string>& files) {
-  try {
-    look(value, files);
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "accepted";
+  return refusal_of([&] { look(value, files); });
 }
 
 TEST(Fields, KnownHeapsComeBackAndOneRearrangedPileSpoilsNothing) {

@@ -182,7 +182,7 @@ TEST(PairRun, HertzImpactIsTheClosedForm) {
   expect_closed_forms(damped, "pair.speed_0.01.");
 }
 
-// Of disks, for small depths.
+// Disks, for small depths.
 TEST(PairRun, EnergyLawHasOneRestitutionForAllSpeeds) {
   const Folder folder;
   const Summary s =

@@ -7,14 +7,14 @@
 #include <variant>
 
 #include "coupling/averaging/base.h"
-#include "coupling/heap/dip.h"
-#include "coupling/heap/pile_frame.h"
-#include "coupling/heap/setup.h"
 #include "coupling/judge/words.h"
 #include "coupling/observe/setup.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/realization_file.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/specimen/dip.h"
+#include "coupling/specimen/pile_frame.h"
+#include "coupling/specimen/setup.h"
 #include "coupling/statistics/spread.h"
 #include "coupling/studies/pile/pile_ensemble.h"
 #include "coupling/studies/pile/study.h"

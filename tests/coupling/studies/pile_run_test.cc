@@ -142,7 +142,7 @@ TEST(PileRun, ReportTellsWhatChangedGravityDid) {
   EXPECT_THAT(page, HasSubstr("2 piles, 25 grains each"));
   EXPECT_THAT(page, HasSubstr("themselves uncertain by 71 %"));
   EXPECT_THAT(page, HasSubstr("(repose.mean_deg)"));
-  // Of piles from files what stands counts, not what the case would pour.
+  // What stands counts of piles from files, not what the case would pour.
   const Output again =
       program("run " + file + " -o " + (folder / "again") + " --set source.grains=30" +
               " --set 'grains.files=[\"" + (folder / "out/snapshots.h5") + "\"]'");

@@ -30,7 +30,7 @@ void add_sample(RveTable& table, const std::vector<double>& volume) {
   table.loading = static_cast<int>(volume.size()) - 1;
 }
 
-// Of every sample, trace/3: where the mean is least, and what it grows by until the end.
+// Every sample's trace/3: where the mean is least, and what it grows by until the end.
 std::vector<double> least(const Contraction& found) {
   std::vector<double> out;
   for (const auto& volume : found.volumes) out.push_back(volume.there);

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "continuum/model.h"
-#include "coupling/heap/base_shape.h"
-#include "coupling/heap/slip_lines.h"
 #include "coupling/judge/words.h"
+#include "coupling/specimen/base_shape.h"
+#include "coupling/specimen/slip_lines.h"
 #include "coupling/store/vtu.h"
 #include "tests/coupling/shipped.h"
 

@@ -8,7 +8,7 @@
 #include "dem/space/moving_cell.h"
 #include "tests/dem/bits_scene.h"
 #include "tests/dem/cell_scene.h"
-#include "tests/dem/damaged_image.h"
+#include "tests/dem/damaged_checkpoint.h"
 
 namespace grainfield::dem::cells {
 namespace {
@@ -53,10 +53,10 @@ std::uint64_t end_of(const Case& c, int threads, bool restart, bool one_by_one =
   engine->set_velocity_gradient(c.later);
   on(c.half / 3);
   if (restart) {
-    const std::string image = engine->image();
+    const std::string checkpoint = engine->checkpoint();
     settings.threads = 2;
     engine = empty();
-    engine->restore(image);
+    engine->restore(checkpoint);
   }
   on(c.half - c.half / 3);
   return hash_of(engine->snapshot(), *engine);
@@ -141,29 +141,29 @@ TEST(CellBitsOf, ARestartInANarrowCell) {
     for (long cut = 1; cut < kEnd; cut += 3) {
       const auto first = narrow_cell(shape, true), then = narrow_cell(shape, false);
       first->step(cut);
-      then->restore(first->image());
-      EXPECT_TRUE(then->image() == first->image()) << cut;
+      then->restore(first->checkpoint());
+      EXPECT_TRUE(then->checkpoint() == first->checkpoint()) << cut;
       then->step(kEnd - cut);
       EXPECT_EQ(hash_of(then->snapshot(), *then), end) << cut;
     }
   }
 }
 
-TEST(CellBitsOf, AnImageWithoutAWayAcrossTheCellIsRefused) {
+TEST(CellBitsOf, ACheckpointWithoutAWayAcrossTheCellIsRefused) {
   const auto engine = narrow_cell(ShapeKind::disk, true);
   engine->step(1);
-  const std::string image = engine->image();
+  const std::string checkpoint = engine->checkpoint();
   // The last number with the bits of the first edge: edges, then the way across.
   const double across = engine->cell().edges(0, 0);
-  const std::size_t at = image.rfind(bytes_of(1.03125));
+  const std::size_t at = checkpoint.rfind(bytes_of(1.03125));
   ASSERT_NE(at, std::string::npos);
   ASSERT_NE(across, 1.03125);  // the edges have moved on since the search
   const auto refusal = [&](double value) {
-    return refusal_with(*narrow_cell(ShapeKind::disk, false), image, at, value);
+    return refusal_with(*narrow_cell(ShapeKind::disk, false), checkpoint, at, value);
   };
   EXPECT_EQ(refusal(1.03125), "accepted");
   for (const double value : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    EXPECT_EQ(refusal(value), kBrokenImage) << value;
+    EXPECT_EQ(refusal(value), kBrokenCheckpoint) << value;
   }
 }
 

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/dem/cell_scene.h"
+#include "tests/refusal.h"
 
 namespace grainfield::dem::cells {
 namespace {
@@ -9,17 +10,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-template <class Call>
-std::string refusal(Call call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& e) {
-    EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
-    return e.what();
-  }
-  return "accepted";
-}
 
 NewGrain grain(double x, double y, double radius) {
   NewGrain g;
@@ -44,7 +34,7 @@ TEST(CellEngine, RefusesWalls) {
     w.name = "lid";
     w.shape = shape;
     w.normal = normal;
-    return refusal([&] { engine->add_wall(w); });
+    return refusal_of([&] { engine->add_wall(w); });
   };
   EXPECT_EQ(wall("plane", {0, -1, 0}), "accepted");
   EXPECT_EQ(wall("plane", {0.6, 0.8, 0}),
@@ -56,8 +46,8 @@ TEST(CellEngine, RefusesWalls) {
 
 TEST(CellEngine, RefusesGrainsThatAreTooLarge) {
   const auto engine = make_engine(periodic_in_x());
-  EXPECT_EQ(refusal([&] { engine->add(grain(0, 0, 0.23)); }), "accepted");
-  EXPECT_EQ(refusal([&] { engine->add(grain(0, 0, 0.25)); }),
+  EXPECT_EQ(refusal_of([&] { engine->add(grain(0, 0, 0.23)); }), "accepted");
+  EXPECT_EQ(refusal_of([&] { engine->add(grain(0, 0, 0.25)); }),
             "cell.edges: found 1 m from a place to its nearest image, allowed for grains of radius "
             "0.25 m: at least 1.05 m (4.2 radii; else a grain would touch another one, or itself, "
             "by two images)");
@@ -71,24 +61,25 @@ TEST(CellEngine, RefusesRestInAFlow) {
   flow(0, 0) = -0.1;
   const auto engine = make_engine(settings);
   engine->add(grain(0, 0, 0.1));
-  EXPECT_EQ(refusal([&] { engine->set_velocity_gradient(flow); }), "accepted");
+  EXPECT_EQ(refusal_of([&] { engine->set_velocity_gradient(flow); }), "accepted");
   NewGrain fixed = grain(0.5, 0.5, 0.1);
   fixed.fixed = true;
-  EXPECT_THAT(refusal([&] { engine->add(fixed); }),
+  EXPECT_THAT(refusal_of([&] { engine->add(fixed); }),
               StartsWith("cell.velocity_gradient: found a flow with fixed grains"));
-  EXPECT_THAT(refusal([&] { engine->set_sleep(true); }),
+  EXPECT_THAT(refusal_of([&] { engine->set_sleep(true); }),
               StartsWith("cell.velocity_gradient: found a flow with sleeping"));
-  EXPECT_THAT(refusal([&] { engine->set_velocity_gradient(simple_shear(1)); }),
+  EXPECT_THAT(refusal_of([&] { engine->set_velocity_gradient(simple_shear(1)); }),
               StartsWith("cell.velocity_gradient: found a flow that goes"));
   engine->set_velocity_gradient(Matrix3d::Zero());
   engine->add(fixed);
   engine->set_sleep(true);
-  EXPECT_THAT(refusal([&] { engine->set_velocity_gradient(flow); }), HasSubstr("fixed grains"));
+  EXPECT_THAT(refusal_of([&] { engine->set_velocity_gradient(flow); }), HasSubstr("fixed grains"));
   settings.cell.velocity_gradient = flow;
   settings.sleep.on = true;
-  EXPECT_THAT(refusal([&] { make_engine(settings); }), HasSubstr("with sleeping"));
+  EXPECT_THAT(refusal_of([&] { make_engine(settings); }), HasSubstr("with sleeping"));
   settings.cell.edges.setZero();
-  EXPECT_THAT(refusal([&] { make_engine(settings); }), StartsWith("cell.edges: found (0, 0, 0) m"));
+  EXPECT_THAT(refusal_of([&] { make_engine(settings); }),
+              StartsWith("cell.edges: found (0, 0, 0) m"));
 }
 
 TEST(CellEngine, EndsWhenTheCellIsTooSmall) {
@@ -156,10 +147,10 @@ TEST(CellEngine, GoesOnFromASnapshot) {
 
 TEST(CellEngine, StressNeedsACell) {
   const auto engine = make_engine(periodic_in_x());
-  EXPECT_EQ(refusal([&] { cell_stress(engine->snapshot()); }),
+  EXPECT_EQ(refusal_of([&] { cell_stress(engine->snapshot()); }),
             "the stress of a cell: found a cell that is not periodic along axis y, allowed: "
             "periodic along all 2");
-  EXPECT_EQ(refusal([&] { engine->cell_stress(); }),
+  EXPECT_EQ(refusal_of([&] { engine->cell_stress(); }),
             "the stress of a cell: found a cell that is not periodic along axis y, allowed: "
             "periodic along all 2");
 }

@@ -72,7 +72,7 @@ TEST(HardFlight, TouchingPairsMeetAtOnceOrNever) {
   EXPECT_EQ(meet_time(way, V(1, 0), V(1 - 1e-16, 0), 1.0), kNever);  // round-off of 1
   EXPECT_EQ(meet_time(way, still, V(-1e-9, 0), 1.0), 0);
   EXPECT_EQ(meet_time(way, still, still, 1.0), kNever);
-  // Of different accelerations: up and back.
+  // Different accelerations: up and back.
   EXPECT_NEAR(meet_time(way, still, V(1, 0), force, 1.0), 2, 1e-12);
   EXPECT_EQ(meet_time(way, still, still, force, 1.0), 0);
   EXPECT_EQ(meet_time(way, still, still, V(-force), 1.0), kNever);

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "dem/collisions/hard_engine.h"
-#include "dem/computation_failed.h"
+#include "dem/shared/computation_failed.h"
 #include "tests/dem/hard_scene.h"
 
 namespace grainfield::dem {

@@ -49,7 +49,7 @@ struct Pair {
   bool wall = false;
   double touching = 0;
 
-  // Of the first relative to the second where they touch.
+  // The velocity of the first relative to the second where they touch.
   VectorOf<D> contact_velocity() const {
     return a.velocity + velocity_at(a.spin, VectorOf<D>(a.radius * n)) - b.velocity -
            velocity_at(b.spin, VectorOf<D>(-b.radius * n));

@@ -141,7 +141,7 @@ TEST(ContactList, PairsWithImagesAreTheSecondGrainsThreads) {
   EXPECT_GT(others, 20);
 }
 
-TEST(ContactList, NonsenseFromAnImageIsSeen) {
+TEST(ContactList, NonsenseFromACheckpointIsSeen) {
   List list;
   list.clear();
   list.pairs.add({{1}, 1, {}});

@@ -9,6 +9,7 @@
 
 #include "dem/space/lever.h"
 #include "tests/dem/bits_scene.h"
+#include "tests/refusal.h"
 
 namespace grainfield::dem {
 namespace {
@@ -60,15 +61,6 @@ NewGrain grain_at(double x, double y, double radius = 0.01) {
 }
 
 AddedForce::Loads spring(const GrainsNow& grains, double k) { return {-k * grains.positions, {}}; }
-
-std::string refusal_of(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "accepted";
-}
 
 /// Of errors at time steps that fall by halves.
 void expect_second_order(const std::vector<double>& errors) {
@@ -291,20 +283,20 @@ TEST(AddedForces, ThreadsAndRestartsEndInTheSameBits) {
       add(*engine, sticky, 3, true, "glue");
       if (threads == 3) {
         engine->step(101);
-        const std::string image = engine->image();
+        const std::string checkpoint = engine->checkpoint();
         EngineSettings s = settings_of(dim, 2e-5);
         auto bare = make_engine(s);
-        EXPECT_THAT(refusal_of([&] { bare->restore(image); }),
+        EXPECT_THAT(refusal_of([&] { bare->restore(checkpoint); }),
                     HasSubstr("found none, allowed: drag, glue; add the same forces"));
         engine = make_engine(s);
         add(*engine, drag, 1, false, "drag");
         add(*engine, sticky, 2, true, "glue");
-        EXPECT_THAT(refusal_of([&] { engine->restore(image); }),
+        EXPECT_THAT(refusal_of([&] { engine->restore(checkpoint); }),
                     HasSubstr("found glue every 2 steps, allowed: glue every 3 steps"));
         engine = make_engine(s);
         add(*engine, drag, 1, false, "drag");
         add(*engine, sticky, 3, true, "glue");
-        engine->restore(image);
+        engine->restore(checkpoint);
         engine->step(99);
       } else {
         for (int k = 0; k < 20; ++k) engine->step(10);

@@ -197,7 +197,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, FromSnapshot,
                                   (kind.param.hertz ? "Hertz" : "Linear");
                          });
 
-// Of a packing at rest the tangential force is the spring.
+// The tangential force of a packing at rest is the spring.
 TEST(FromSnapshotOf, AnotherProgramUnknownSpringsAreTheTangentialForce) {
   const auto engine = moving_heap(3, false);
   Snapshot state = engine->snapshot();

@@ -229,11 +229,11 @@ TEST(Engine, SameBitsOnAnyNumberOfThreads) {
   for (const IntegratorKind kind : {IntegratorKind::verlet, IntegratorKind::gear}) {
     const auto one = falling(1, kind);
     one->step(3000);
-    const std::string expected = one->image();
+    const std::string expected = one->checkpoint();
     for (const int threads : {2, 3, 4, 8}) {
       const auto many = falling(threads, kind);
       many->step(3000);
-      EXPECT_TRUE(many->image() == expected) << threads << " threads";
+      EXPECT_TRUE(many->checkpoint() == expected) << threads << " threads";
     }
   }
 }
@@ -248,14 +248,14 @@ TEST(Engine, SameBitsHoweverTheStepsAreCut) {
     cut->step(n);
     left -= n;
   }
-  EXPECT_TRUE(whole->image() == cut->image());
+  EXPECT_TRUE(whole->checkpoint() == cut->checkpoint());
 }
 
 TEST(Engine, RestartsToTheSameBits) {
   for (const IntegratorKind kind : {IntegratorKind::verlet, IntegratorKind::gear}) {
     const auto whole = falling(1, kind);
     whole->step(1237);
-    const std::string middle = whole->image();
+    const std::string middle = whole->checkpoint();
     whole->step(1763);
     EngineSettings s;
     s.law = OverlapAreaLaw{1e6, 0.75};
@@ -268,7 +268,7 @@ TEST(Engine, RestartsToTheSameBits) {
     resumed->add_wall({"right", {0.1, 0, 0}, {-1, 0, 0}, 0.2});
     resumed->restore(middle);
     resumed->step(1763);
-    EXPECT_TRUE(whole->image() == resumed->image());
+    EXPECT_TRUE(whole->checkpoint() == resumed->checkpoint());
     EXPECT_THROW(resumed->restore(middle.substr(0, middle.size() - 9)), std::invalid_argument);
     EXPECT_THROW(resumed->restore(middle + "x"), std::invalid_argument);
   }

@@ -164,7 +164,7 @@ TEST(Registry, NewShapeLawAndIntegratorMakeAnEngine) {
     engine.step(1);
     const Diagnostics d = engine.measure();
     deepest = std::max(deepest, d.elastic_energy);
-    // Of first order: at most a step's force times velocity is amiss.
+    // First order: at most a step's force times velocity is amiss.
     EXPECT_NEAR(d.kinetic_energy + d.elastic_energy, before, 0.02 * before);
   }
   EXPECT_NEAR(deepest, before, 0.02 * before);  // all of it, head-on

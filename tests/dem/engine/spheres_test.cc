@@ -249,9 +249,9 @@ TEST(Spheres, SameBitsOnAnyThreadsAndAfterARestart) {
     engine->set_background_damping(20);
     if (cut > 0) {
       engine->step(cut);
-      const std::string image = engine->image();
+      const std::string checkpoint = engine->checkpoint();
       engine = walled(make_engine(s));
-      engine->restore(image);
+      engine->restore(checkpoint);
     }
     engine->step(steps - engine->steps());
     if (steps == 30000) {

@@ -144,7 +144,7 @@ TEST(SuperellipsoidEngine, MomentumAndAngularMomentumStay) {
   }
 }
 
-// Bits: of threads, of an image in the middle, in a box with gravity and in a cell that shears.
+// Bits: of threads, of a checkpoint in the middle, in a box with gravity and in a cell that shears.
 TEST(SuperellipsoidEngine, SameBitsOnAnyThreadsAndAfterARestart) {
   const auto run = [](bool cell, int threads, long cut) {
     EngineSettings s = settings_of(HertzEllipticLaw{1e5, 0.3, 0.3}, 2e-4);
@@ -165,9 +165,9 @@ TEST(SuperellipsoidEngine, SameBitsOnAnyThreadsAndAfterARestart) {
     add_gas(*engine, 4, 1.85, 0.4, 1.6, 1);
     if (cut > 0) {
       engine->step(cut);
-      const std::string image = engine->image();
+      const std::string checkpoint = engine->checkpoint();
       engine = made();
-      engine->restore(image);
+      engine->restore(checkpoint);
     }
     engine->step(600 - engine->steps());
     EXPECT_GT(engine->measure().contacts, 60);

@@ -50,7 +50,7 @@ TEST(ThreadTeam, AllTakePart) {
   std::atomic<int> sum = 0;
   team.run([&](int rank) {
     sum += 1 << rank;
-    team.meet();
+    team.barrier();
     if (sum != 7) sum = -100;
   });
   EXPECT_EQ(sum, 7);
@@ -70,11 +70,11 @@ TEST(ThreadTeam, OneHandsOutPartsOfItsTask) {
           for (int part = 0; part < step; ++part) {
             team.together([&](int one) {
               ++done[one];
-              team.meet();
+              team.barrier();
               if (*std::min_element(done.begin(), done.end()) != 2 + before + part) {
                 by_hand = -1000;
               }
-              team.meet();
+              team.barrier();
             });
           }
         });

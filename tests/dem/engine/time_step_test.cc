@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "dem/engine/engine.h"
-#include "dem/heap/grain_family.h"
+#include "dem/grains/grain_family.h"
 #include "dem/random/random.h"
 
 namespace grainfield::dem {

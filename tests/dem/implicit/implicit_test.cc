@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "dem/computation_failed.h"
 #include "dem/random/random.h"
+#include "dem/shared/computation_failed.h"
 #include "tests/dem/implicit_scene.h"
 
 namespace grainfield::dem::testing {
@@ -346,12 +346,12 @@ TEST(Implicit, SameBitsAgain) {
     // Stopped and resumed.
     SoftDisks half(scene, start, steps), rest(scene, start, steps);
     half.step(143);
-    rest.restore(half.image());
+    rest.restore(half.checkpoint());
     rest.step(157);
-    EXPECT_EQ(rest.image(), one.image());
+    EXPECT_EQ(rest.checkpoint(), one.checkpoint());
     SoftDisks less(scene, {start[0]}, steps);
-    EXPECT_THROW(less.restore(half.image()), std::invalid_argument);
-    EXPECT_THROW(rest.restore(half.image() + "x"), std::invalid_argument);
+    EXPECT_THROW(less.restore(half.checkpoint()), std::invalid_argument);
+    EXPECT_THROW(rest.restore(half.checkpoint() + "x"), std::invalid_argument);
   }
 }
 
@@ -373,15 +373,15 @@ TEST(Implicit, PartsOfAStepAreTheStep) {
       EXPECT_EQ(parts.tally().steps, ended);
       if (ends || calls % 3 != 0) continue;
       SoftDisks next(scene, start, steps);
-      next.restore(parts.image());
-      ASSERT_EQ(next.image(), parts.image());
+      next.restore(parts.checkpoint());
+      ASSERT_EQ(next.checkpoint(), parts.checkpoint());
       EXPECT_EQ(next.time(), parts.time());
       parts = std::move(next);
       ++resumed;
     }
     EXPECT_EQ(calls, whole.tally().halved + whole.tally().solves);
     EXPECT_GT(resumed, 3);
-    EXPECT_EQ(parts.image(), whole.image());
+    EXPECT_EQ(parts.checkpoint(), whole.checkpoint());
   }
 }
 

@@ -166,19 +166,19 @@ TEST(Switching, RainComesToRestGrainByGrain) {
   EXPECT_NEAR(base, columns * rows, 0.02 * columns * rows);
 }
 
-TEST(Switching, GoesOnFromItsImageToTheSameBits) {
+TEST(Switching, GoesOnFromItsCheckpointToTheSameBits) {
   const SwitchScene scene = box_scene(3.6);
   const std::vector<Body<2>> disks = rain(3, 3);
   SwitchingDisks whole(scene, disks, testing::steps_of(0.005));
   whole.step(700);
-  const std::string image = whole.image();
+  const std::string checkpoint = whole.checkpoint();
   EXPECT_GT(soft_grains(whole), 0);
   whole.step(400);
   SwitchingDisks other(scene, disks, testing::steps_of(0.005));
-  other.restore(image);
+  other.restore(checkpoint);
   other.step(400);
-  EXPECT_EQ(whole.image(), other.image());
-  EXPECT_THROW(other.restore(image.substr(1)), std::invalid_argument);
+  EXPECT_EQ(whole.checkpoint(), other.checkpoint());
+  EXPECT_THROW(other.restore(checkpoint.substr(1)), std::invalid_argument);
 }
 
 TEST(Switching, RefusesWhatCannotBe) {

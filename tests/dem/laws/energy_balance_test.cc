@@ -8,7 +8,7 @@
 #include "dem/engine/engine.h"
 #include "dem/random/random.h"
 #include "dem/walls/box.h"
-#include "tests/dem/damaged_image.h"
+#include "tests/dem/damaged_checkpoint.h"
 
 namespace grainfield::dem {
 namespace {
@@ -201,7 +201,7 @@ TEST(EnergyBalance, HoldsTheFirstStepOfEachGrain) {
       engine->step(1);
       const Diagnostics after = engine->measure();
       const Grain now = engine->snapshot().grains[id];
-      // Of this grain alone: those before it move on under their own damping.
+      // This grain alone: those before it move on under their own damping.
       const double speed = g.vx * g.vx + 4, spin = g.spin * g.spin;
       const double drag = rate * (now.mass * speed + now.inertia * spin) + alpha * push * g.vx;
       if (k == 0) {
@@ -310,8 +310,8 @@ TEST(EnergyBalance, GoesOnWhenAWallTurnsAboutAnotherCentre) {
   }
 }
 
-// An image with fewer accounts than grains would be written behind their end.
-TEST(EnergyBalance, ImagesWithoutAllAccountsAreRefused) {
+// A checkpoint with fewer accounts than grains would be written behind their end.
+TEST(EnergyBalance, CheckpointsWithoutAllAccountsAreRefused) {
   const EngineSettings s = settings_of(LinearLaw{}, 1e-5);
   const auto engine = make_engine(s);
   for (const double x : {0.0, 1.0}) engine->add(grain(x, 0, 0.01));
@@ -320,17 +320,18 @@ TEST(EnergyBalance, ImagesWithoutAllAccountsAreRefused) {
   force.fx = 3.25;
   engine->apply(force);
   engine->step(1);
-  const std::string image = engine->image();
+  const std::string checkpoint = engine->checkpoint();
   using Account = OuterAccount<2>;
   Account first;
   first.applied.x() = force.fx;
   const std::size_t before = bytes_of(first).find(bytes_of(force.fx));
-  const std::size_t at = image.rfind(bytes_of(force.fx)) - before;  // of the list's first account
-  std::string shorter = image;
+  const std::size_t at =
+      checkpoint.rfind(bytes_of(force.fx)) - before;  // of the list's first account
+  std::string shorter = checkpoint;
   shorter.erase(at + sizeof(Account), sizeof(Account));
   const std::size_t count = at - sizeof(std::uint64_t);
-  EXPECT_EQ(refusal_with(*make_engine(s), image, count, std::uint64_t{2}), "accepted");
-  EXPECT_EQ(refusal_with(*make_engine(s), shorter, count, std::uint64_t{1}), kBrokenImage);
+  EXPECT_EQ(refusal_with(*make_engine(s), checkpoint, count, std::uint64_t{2}), "accepted");
+  EXPECT_EQ(refusal_with(*make_engine(s), shorter, count, std::uint64_t{1}), kBrokenCheckpoint);
 }
 
 TEST(EnergyBalance, IsRefusedWhereItWouldNotHold) {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "tests/dem/bits_scene.h"
+#include "tests/refusal.h"
 
 namespace grainfield::dem {
 namespace {
@@ -108,9 +109,9 @@ TEST(Materials, AreTheSameOnThreadsAndAfterARestart) {
     }
     engine->step(2000);
     if (cut) {
-      const std::string image = engine->image();
+      const std::string checkpoint = engine->checkpoint();
       engine = box();
-      engine->restore(image);
+      engine->restore(checkpoint);
     }
     engine->step(2000);
     return bits::hash_of(engine->snapshot());
@@ -120,20 +121,11 @@ TEST(Materials, AreTheSameOnThreadsAndAfterARestart) {
   EXPECT_EQ(one, run(1, true));
 }
 
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "accepted";
-}
-
 TEST(Materials, RefusalsSayWhatIsMissing) {
-  EXPECT_THAT(refusal([] { make_engine(two_materials())->add(disk("stell", 0, 0)); }),
+  EXPECT_THAT(refusal_of([] { make_engine(two_materials())->add(disk("stell", 0, 0)); }),
               AllOf(HasSubstr("\"stell\""), HasSubstr("steel, glass"),
                     HasSubstr("did you mean \"steel\"?")));
-  EXPECT_THAT(refusal([] { make_engine(EngineSettings{})->add(disk("steel", 0, 0)); }),
+  EXPECT_THAT(refusal_of([] { make_engine(EngineSettings{})->add(disk("steel", 0, 0)); }),
               HasSubstr("no materials are named"));
   EngineSettings s = two_materials();
   s.material_pairs.erase(s.material_pairs.begin() + 1);
@@ -142,17 +134,17 @@ TEST(Materials, RefusalsSayWhatIsMissing) {
     engine->add(disk("steel", 0, 0));
     engine->add(disk("glass", 1, 0));
   };
-  EXPECT_THAT(refusal(mixed), HasSubstr("material pair glass - steel: found none"));
+  EXPECT_THAT(refusal_of(mixed), HasSubstr("material pair glass - steel: found none"));
   const auto on_wall = [&] {
     const auto engine = make_engine(s);
     engine->add(disk("steel", 0, 0));
     engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0}, "glass");
   };
-  EXPECT_THAT(refusal(on_wall), HasSubstr("material pair steel - glass: found none"));
+  EXPECT_THAT(refusal_of(on_wall), HasSubstr("material pair steel - glass: found none"));
   const auto made = [](const auto& change) {
     EngineSettings changed = two_materials();
     change(changed);
-    return refusal([&] { make_engine(changed); });
+    return refusal_of([&] { make_engine(changed); });
   };
   EXPECT_THAT(made([](auto& e) { e.material_pairs[1].friction = -1; }),
               HasSubstr("material pair glass - steel: found -1, allowed: 0 or more"));

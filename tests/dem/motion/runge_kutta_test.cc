@@ -188,10 +188,10 @@ TEST(RungeKutta, SameBitsOnThreadsAndAfterARestart) {
     gas::add_gas(*engine, 3, 2.6, 0.7, 1.3, 2);
     if (cut > 0) {
       engine->step(cut);
-      const std::string image = engine->image();
+      const std::string checkpoint = engine->checkpoint();
       engine = make_engine(s);
       gas::add_box(*engine, 3 * 2.6, 0.2);
-      engine->restore(image);
+      engine->restore(checkpoint);
     }
     engine->step(600 - engine->steps());
     EXPECT_EQ(engine->snapshot().attributes.at("integrator"), "runge_kutta");

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "dem/packing/packing.h"
+#include "dem/grains/packing.h"
 #include "dem/quasistatic/plane_network.h"
 #include "dem/quasistatic/sparse_newton.h"
 #include "dem/random/random.h"

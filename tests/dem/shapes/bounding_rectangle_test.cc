@@ -231,7 +231,7 @@ TEST(BoundingRectangle, CrowdHasTheSameBitsOnAnyThreadsAndAfterRestarts) {
     s.time_step = 1e-5;
     return s;
   };
-  std::vector<std::string> images;
+  std::vector<std::string> checkpoints;
   int slept = 0;
   for (const int threads : {1, 2, 3}) {
     auto engine = crowd(settings(threads));
@@ -239,15 +239,15 @@ TEST(BoundingRectangle, CrowdHasTheSameBitsOnAnyThreadsAndAfterRestarts) {
       engine->step(1500);
       slept = std::max(slept, engine->grains() - engine->measure().awake);
       if (threads != 2) continue;
-      const std::string image = engine->image();
+      const std::string checkpoint = engine->checkpoint();
       engine = crowd(settings(1));
-      engine->restore(image);
+      engine->restore(checkpoint);
     }
-    images.push_back(engine->image());
+    checkpoints.push_back(engine->checkpoint());
   }
   EXPECT_GT(slept, 20);
-  EXPECT_EQ(images[1], images[0]);
-  EXPECT_EQ(images[2], images[0]);
+  EXPECT_EQ(checkpoints[1], checkpoints[0]);
+  EXPECT_EQ(checkpoints[2], checkpoints[0]);
 }
 
 }  // namespace

@@ -323,7 +323,7 @@ TEST(CommonNormal, ChangesWithTheStepAlongPaths) {
   EXPECT_NEAR(point_fine / point_coarse, 0.25, 0.1);
 }
 
-// Of all exponents and ten times as deep: the force leaps nowhere, because the normal turns by at
+// All exponents and ten times as deep: the force leaps nowhere, because the normal turns by at
 // most kMostTurn a step, also where the least thickness that it stands in ends.
 TEST(CommonNormal, ForceLeapsNowhereAlsoWhereALeastEnds) {
   Random random(8);

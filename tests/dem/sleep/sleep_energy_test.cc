@@ -41,7 +41,7 @@ struct Poured {
   std::vector<double> state;
 };
 
-/// Grains fall one after another between walls; with `restart` the pour goes on from an image.
+/// Grains fall one after another between walls; with `restart` the pour goes on from a checkpoint.
 Poured pour(const EngineSettings& s, int grains, double interval, int restart = -1) {
   const bool space = s.shape == ShapeKind::sphere;
   const auto walled = [&] {
@@ -75,9 +75,9 @@ Poured pour(const EngineSettings& s, int grains, double interval, int restart = 
       before = now;
     }
     if (k == restart) {
-      const std::string image = engine->image();
+      const std::string checkpoint = engine->checkpoint();
       engine = walled();
-      engine->restore(image);
+      engine->restore(checkpoint);
     }
   }
   out.end = engine->measure();
@@ -131,11 +131,11 @@ TEST(SleepEnergy, FrozenContactsRememberRolling) {
   // The moment of gravity about the contact: m g R sin over R.
   const double held = mass_of(false) * kGravity * std::sin(0.1);
   EXPECT_NEAR(asleep.contacts[0].rolling_spring.norm(), held, 0.02 * held);
-  const std::string image = engine->image();
+  const std::string checkpoint = engine->checkpoint();
   auto again = make_engine(s);
   again->add_wall({"floor", {0, 0, 0}, up(false), 1});
-  again->restore(image);
-  EXPECT_EQ(again->image(), image);
+  again->restore(checkpoint);
+  EXPECT_EQ(again->checkpoint(), checkpoint);
   for (Engine* e : {engine.get(), again.get()}) {
     e->set_sleep(false);
     e->step(1);

@@ -337,25 +337,25 @@ TEST(Sleep, AnImpactOnSleepersGoesOnBitForBitFromAnyStep) {
   NewGrain falls = polygon_grain(random, 0.09, 0.16);
   falls.vy = -2;
   engine->add(falls);
-  std::vector<std::pair<long, std::string>> images;
+  std::vector<std::pair<long, std::string>> checkpoints;
   int most_awake = 0;
   for (int k = 0; k < 250; ++k) {
     engine->step(7);
-    images.emplace_back(engine->steps(), engine->image());
+    checkpoints.emplace_back(engine->steps(), engine->checkpoint());
     most_awake = std::max(most_awake, engine->measure().awake);
   }
   EXPECT_GT(most_awake, 5) << "the impact wakes sleepers";
   const long end = engine->steps() + 300;
   engine->step(300);
-  const std::string uninterrupted = engine->image();
-  for (const auto& [step, image] : images) {
+  const std::string uninterrupted = engine->checkpoint();
+  for (const auto& [step, checkpoint] : checkpoints) {
     auto resumed = make_engine(settings);
     resumed->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
     resumed->add_wall({"left", {0, 0, 0}, {1, 0, 0}, 0.2});
     resumed->add_wall({"right", {8 * 0.023, 0, 0}, {-1, 0, 0}, 0.2});
-    resumed->restore(image);
+    resumed->restore(checkpoint);
     resumed->step(end - resumed->steps());
-    EXPECT_TRUE(resumed->image() == uninterrupted) << "resumed at step " << step;
+    EXPECT_TRUE(resumed->checkpoint() == uninterrupted) << "resumed at step " << step;
   }
 }
 
@@ -371,12 +371,12 @@ TEST(Sleep, PouringGivesTheSameBitsOnAnyThreadsAndAfterRestarts) {
       engine->add(g);
       engine->step(700);
       if (k == restart_at) {
-        const std::string image = engine->image();
+        const std::string checkpoint = engine->checkpoint();
         auto fresh = make_engine(settings);
         fresh->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
         fresh->add_wall({"left", {0, 0, 0}, {1, 0, 0}, 0.2});
         fresh->add_wall({"right", {6 * 0.023, 0, 0}, {-1, 0, 0}, 0.2});
-        fresh->restore(image);
+        fresh->restore(checkpoint);
         engine = std::move(fresh);
       }
     }

@@ -35,7 +35,7 @@ TEST(Sleepers, ComeBehindTheAwakeAndKeepWhatTheyCarry) {
   for (int k = 0; k < 6; ++k) {
     EXPECT_EQ(s.is_asleep(k), k >= awake);
     EXPECT_EQ(bodies[k] % 2 == 0, k >= awake);
-    EXPECT_EQ(s.rest(k).press, bodies[k]);
+    EXPECT_EQ(s.rest(k).force_sum, bodies[k]);
   }
   s.settled();
   s.part(awake, [](int, int) { FAIL(); });
@@ -115,7 +115,7 @@ TEST(Sleepers, KnowWhatLeavesThemOutOfBalance) {
   // A neighbour presses with 3 N from above, summed over 50 steps: felt is on the neighbour.
   ForceSum<2> felt;
   felt.force = {0, 150};
-  felt.press = 150;
+  felt.force_sum = 150;
   s.touch(0, felt);
   EXPECT_DOUBLE_EQ(s.residual(0, 50).unbalanced(1), 3);
   EXPECT_DOUBLE_EQ(s.residual(0, 50).load, 11.5);

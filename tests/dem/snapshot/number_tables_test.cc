@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "dem/snapshot/hdf5_file.h"
+#include "dem/hdf5/file.h"
 #include "dem/snapshot/snapshot.h"
 #include "tests/paths.h"
 

@@ -12,7 +12,7 @@
 #include <fstream>
 #include <limits>
 
-#include "dem/snapshot/hdf5_file.h"
+#include "dem/hdf5/file.h"
 #include "tests/dem/snapshot_scene.h"
 
 namespace grainfield::dem {
@@ -60,7 +60,7 @@ TEST_F(SnapshotFile, ComesBackBitForBit) {
   const auto texts = [](const Snapshot& s) {
     std::vector<std::string> all;
     visit_values(s, [&](const auto& value) {
-      ImageWriter w;
+      CheckpointWriter w;
       w.put(value);
       all.push_back(w.bytes());
     });

@@ -16,7 +16,7 @@
 namespace grainfield::dem {
 namespace {
 
-// Of a collision with a wall that moves, and in the frame in which the wall is at rest.
+// A collision with a wall that moves, and in the frame in which the wall is at rest.
 TEST(WallMotion, AMovingWallIsACollisionInItsFrame) {
   for (const int kind : {0, 1, 2}) {  // disk, sphere, polygon
     const bool space = kind == 1;
@@ -180,12 +180,12 @@ TEST(WallMotion, ASphereLiesInTheCornerOfAMesh) {
     Vec3 sum(0, 0, 0);
     for (const Wall& w : now.walls) sum += w.force;
     EXPECT_NEAR((sum - now.grains[0].mass * Vec3(-3, -4, -9)).norm(), 0, 1e-4 * now.grains[0].mass);
-    // It goes on from the image and from the snapshot as it is.
+    // It goes on from the checkpoint and from the snapshot as it is.
     for (const bool snapshot : {false, true}) {
       auto next = snapshot ? make_engine(s, now) : make_engine(s);
       if (!snapshot) {
         for (const Wall& w : now.walls) next->add_wall(w);
-        next->restore(engine->image());
+        next->restore(engine->checkpoint());
       }
       next->step(1);
       const Snapshot after = next->snapshot();
@@ -341,9 +341,9 @@ TEST(WallMotion, SameBitsOnAnyThreadsAndAfterARestart) {
     const long end = 6000;
     while (engine->steps() < end) {
       if (engine->steps() == cut) {
-        const std::string image = engine->image();
+        const std::string checkpoint = engine->checkpoint();
         engine = walled(make_engine(s));
-        engine->restore(image);
+        engine->restore(checkpoint);
       }
       long next = std::min(end, engine->steps() + batch);
       if (engine->steps() < cut) next = std::min(next, cut);

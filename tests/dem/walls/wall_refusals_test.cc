@@ -1,11 +1,11 @@
 // Motions of walls that cannot be: servos without sense, speeds at which walls jump over grains,
-// images whose servos name walls that are not there.
+// checkpoints whose servos name walls that are not there.
 #include <gmock/gmock.h>
 
 #include <array>
 
 #include "dem/walls/box.h"
-#include "tests/dem/damaged_image.h"
+#include "tests/dem/damaged_checkpoint.h"
 #include "tests/dem/mesh_scene.h"
 #include "tests/dem/wall_scene.h"
 
@@ -146,8 +146,8 @@ TEST(WallRefusals, WallsThatTurnAcrossThemselvesTooFast) {
   }
 }
 
-// The walls between which a servo measures its area stand in an image by their numbers.
-TEST(WallRefusals, ImagesWhoseServosNameNoWall) {
+// The walls between which a servo measures its area stand in a checkpoint by their numbers.
+TEST(WallRefusals, CheckpointsWhoseServosNameNoWall) {
   for (const bool space : {false, true}) {
     const auto boxed = [&] {
       const LinearLaw law{1e5, 3e4, 0, 0};
@@ -164,26 +164,26 @@ TEST(WallRefusals, ImagesWhoseServosNameNoWall) {
     if (space) lid.servo->between.push_back({"front", "back"});
     engine->set_wall_motion("lid", lid);
     engine->step(1);
-    const std::string image = engine->image();
+    const std::string checkpoint = engine->checkpoint();
     using Indices = std::array<int, 4>;  // of the first walls of the pairs, of the second ones
     const Indices right = space ? Indices{0, 2, 1, 3} : Indices{0, -1, 1, -1};
-    const std::size_t at = image.find(bytes_of(right));
+    const std::size_t at = checkpoint.find(bytes_of(right));
     ASSERT_NE(at, std::string::npos);
     const auto refusal = [&](int place, int wall) {
       Indices wrong = right;
       wrong[place] = wall;
-      return refusal_with(*boxed(), image, at, wrong);
+      return refusal_with(*boxed(), checkpoint, at, wrong);
     };
     const int walls = space ? 6 : 4;
     EXPECT_EQ(refusal(0, 2), "accepted");
     for (const int wall : {-2, -1, walls, 1 << 20}) {
-      EXPECT_EQ(refusal(0, wall), kBrokenImage) << wall;
-      EXPECT_EQ(refusal(2, wall), kBrokenImage) << wall;
+      EXPECT_EQ(refusal(0, wall), kBrokenCheckpoint) << wall;
+      EXPECT_EQ(refusal(2, wall), kBrokenCheckpoint) << wall;
       if (wall == -1 && !space) continue;  // the plane has one pair
-      EXPECT_EQ(refusal(1, wall), kBrokenImage) << wall;
-      EXPECT_EQ(refusal(3, wall), kBrokenImage) << wall;
+      EXPECT_EQ(refusal(1, wall), kBrokenCheckpoint) << wall;
+      EXPECT_EQ(refusal(3, wall), kBrokenCheckpoint) << wall;
     }
-    EXPECT_EQ(refusal(1, 0), space ? "accepted" : kBrokenImage);
+    EXPECT_EQ(refusal(1, 0), space ? "accepted" : kBrokenCheckpoint);
   }
 }
 

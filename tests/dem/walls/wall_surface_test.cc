@@ -17,21 +17,12 @@
 #include "dem/walls/surface.h"
 #include "dem/walls/wall_motion.h"
 #include "tests/dem/mesh_scene.h"
+#include "tests/refusal.h"
 
 namespace grainfield::dem {
 namespace {
 
 using testing::HasSubstr;
-
-template <class Call>
-std::string refusal(Call call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "accepted";
-}
 
 Wall round_wall(const char* shape, double radius, double end_radius, double length, bool inside) {
   Wall w{"wall", {0, 0, 0}, Vec3(1, 2, 2) / 3, 0, shape};
@@ -48,7 +39,7 @@ double sampled_distance(const Wall& w, const Vec3& at) {
   double least = 1e300;
   for (int k = 0; k <= 2000; ++k) {
     const double t = k / 2000.0, r = w.radius + t * (w.end_radius - w.radius);
-    // Of one circle the nearest point is in the half plane of the place.
+    // The nearest point of one circle is in the half plane of the place.
     const double z = at.dot(w.normal), rho = std::hypot(at.dot(across), at.dot(third));
     least = std::min(least, std::hypot(rho - r, z - t * w.length));
   }
@@ -168,19 +159,21 @@ TEST(WallSurface, FacetsOfARoundMeshAreOneContact) {
 
 TEST(WallSurface, ShapesThatDoNotFitAreRefused) {
   Wall w = round_wall("cylindre", 1, 1, 1, true);
-  EXPECT_EQ(refusal([&] { surface_of<3>(w); }),
+  EXPECT_EQ(refusal_of([&] { surface_of<3>(w); }),
             "wall wall: shape: found \"cylindre\", allowed: plane, cylinder, cone, mesh; did you "
             "mean \"cylinder\"?");
   w.shape = "cone";
-  EXPECT_THAT(refusal([&] { surface_of<2>(w); }),
+  EXPECT_THAT(refusal_of([&] { surface_of<2>(w); }),
               HasSubstr("wall wall: shape: found \"cone\", allowed: plane, cylinder"));
   w.length = 0;
-  EXPECT_EQ(refusal([&] { surface_of<3>(w); }), "wall wall: length: found 0, allowed: above 0 m");
+  EXPECT_EQ(refusal_of([&] { surface_of<3>(w); }),
+            "wall wall: length: found 0, allowed: above 0 m");
   w.shape = "cylinder";
   w.radius = -1;
-  EXPECT_EQ(refusal([&] { surface_of<3>(w); }), "wall wall: radius: found -1, allowed: above 0 m");
+  EXPECT_EQ(refusal_of([&] { surface_of<3>(w); }),
+            "wall wall: radius: found -1, allowed: above 0 m");
   w.shape = "mesh";
-  EXPECT_EQ(refusal([&] { surface_of<3>(w); }), "wall wall: found no facet");
+  EXPECT_EQ(refusal_of([&] { surface_of<3>(w); }), "wall wall: found no facet");
 }
 
 // Hertz' elliptic contact of a sphere with a cylinder, by elliptic integrals (physics, section 5).
@@ -229,7 +222,7 @@ class Stl : public testing::Test {
   ~Stl() override { std::filesystem::remove(file_); }
 
   std::string refused(const StlOptions& options = {}) const {
-    return refusal([&] { read_stl(file_, options); });
+    return refusal_of([&] { read_stl(file_, options); });
   }
   void write(const std::string& bytes) const { std::ofstream(file_, std::ios::binary) << bytes; }
   /// Facets from outside, in millimetres.

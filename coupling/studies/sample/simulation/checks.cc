@@ -17,6 +17,7 @@
 #include "dem/run/common.h"
 #include "dem/run/judge_draws.h"
 #include "dem/shapes/superellipsoid.h"
+#include "dem/shared/refuse.h"
 #include "dem/space/moving_cell.h"
 
 namespace grainfield::dem {
@@ -38,10 +39,6 @@ constexpr double kMostTilt = 1, kMostShortening = 0.9;
 // Memory of a grain with its contacts, and in each recorded state.
 constexpr double kBytesOfGrain = 4000, kBytesOfRecord = 1500;
 
-[[noreturn]] void refuse(const char* key, const std::string& what) {
-  throw std::invalid_argument(fmt::format("sample.{}: {}", key, what));
-}
-
 template <class Words>
 bool holds(const Words& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -51,12 +48,13 @@ bool holds(const Words& words, const std::string& word) {
 void check_superellipsoids(const SampleSetup& s) {
   const SamplePlan& p = s.plan;
   if (p.axis_max < p.axis_min) {
-    refuse("axis_max", fmt::format("found {:g}, allowed: at least sample.axis_min = {:g}",
-                                   p.axis_max, p.axis_min));
+    refuse("sample.axis_max", fmt::format("found {:g}, allowed: at least sample.axis_min = {:g}",
+                                          p.axis_max, p.axis_min));
   }
   if (p.exponent_max < p.exponent_min) {
-    refuse("exponent_max", fmt::format("found {:g}, allowed: at least sample.exponent_min = {:g}",
-                                       p.exponent_max, p.exponent_min));
+    refuse("sample.exponent_max",
+           fmt::format("found {:g}, allowed: at least sample.exponent_min = {:g}", p.exponent_max,
+                       p.exponent_min));
   }
   for (const double e : {p.exponent_min, p.exponent_max}) {
     superellipsoid({p.axis_min, p.axis_min, p.axis_min}, {e, e});
@@ -68,9 +66,10 @@ void check_dimension(const SampleSetup& s) {
   const SamplePlan& p = s.plan;
   const auto& shapes = sample_shapes(p.dim);
   if (!holds(shapes, p.shape)) {
-    refuse("shape", fmt::format("found \"{}\", allowed with sample.dim = {}: {}; it is a shape of "
-                                "{}D",
-                                p.shape, p.dim, fmt::join(shapes, ", "), 5 - p.dim));
+    refuse("sample.shape",
+           fmt::format("found \"{}\", allowed with sample.dim = {}: {}; it is a shape of "
+                       "{}D",
+                       p.shape, p.dim, fmt::join(shapes, ", "), 5 - p.dim));
   }
   const auto laws = p.dim == 2 ? laws_in<2>() : laws_in<3>();
   if (!holds(laws, s.material.law)) {
@@ -82,7 +81,7 @@ void check_dimension(const SampleSetup& s) {
   if (p.shape == "superellipsoid") check_superellipsoids(s);
   const double most = most_start_fraction(p);
   if (p.start_fraction > most) {
-    refuse("start_fraction",
+    refuse("sample.start_fraction",
            fmt::format("found {:g}, allowed with {}: up to {:g}, "
                        "at which random places without overlap become rare",
                        p.start_fraction,
@@ -91,8 +90,8 @@ void check_dimension(const SampleSetup& s) {
                        p.shape == "superellipsoid" ? round_down(most) : most));
   }
   if (p.corners_max < p.corners_min) {
-    refuse("corners_max", fmt::format("found {}, allowed: at least sample.corners_min = {}",
-                                      p.corners_max, p.corners_min));
+    refuse("sample.corners_max", fmt::format("found {}, allowed: at least sample.corners_min = {}",
+                                             p.corners_max, p.corners_min));
   }
 }
 
@@ -106,12 +105,13 @@ void check_servo(const SamplePlan& p) {
     const char* by = p.compress_to == "pressure" ? "compress_to = \"pressure\""
                      : p.deformation == "axial"  ? "deformation = \"axial\""
                                                  : "constant = \"stress\"";
-    refuse("pressure", fmt::format("found {:g}: a servo without a target, allowed with sample.{}: "
-                                   "above 0",
-                                   p.pressure, by));
+    refuse("sample.pressure",
+           fmt::format("found {:g}: a servo without a target, allowed with sample.{}: "
+                       "above 0",
+                       p.pressure, by));
   }
   if (p.compress_to != "pressure" && has_servo(p)) {
-    refuse("compress_to",
+    refuse("sample.compress_to",
            fmt::format(
                "found \"{}\", allowed with sample.{}: \"pressure\", which the servo goes "
                "on to hold",
@@ -119,32 +119,34 @@ void check_servo(const SamplePlan& p) {
                p.deformation == "axial" ? "deformation = \"axial\"" : "constant = \"stress\""));
   }
   if (p.deformation == "axial" && p.compression != "isotropic") {
-    refuse("compression", fmt::format("found \"{}\", allowed with sample.deformation = \"axial\": "
-                                      "isotropic, because the lateral walls hold the pressure",
-                                      p.compression));
+    refuse("sample.compression",
+           fmt::format("found \"{}\", allowed with sample.deformation = \"axial\": "
+                       "isotropic, because the lateral walls hold the pressure",
+                       p.compression));
   }
 }
 
 // A strain before the first state, and the way back.
 void check_path(const SamplePlan& p) {
   if (starts_as_filled(p) && !is_dropped(p)) {
-    refuse("compress_to", fmt::format("found \"none\", allowed with sample.filling = \"{}\": "
-                                      "pressure, solid_fraction, strain",
-                                      p.filling));
+    refuse("sample.compress_to",
+           fmt::format("found \"none\", allowed with sample.filling = \"{}\": "
+                       "pressure, solid_fraction, strain",
+                       p.filling));
   }
   if (p.precompression > 0 && any_led(p, SamplePhase::deform)) {
-    refuse("precompression",
+    refuse("sample.precompression",
            fmt::format(
                "found {:g}, allowed with sample.{}: 0, because servos hold the pressure",
                p.precompression,
                p.deformation == "axial" ? "deformation = \"axial\"" : "constant = \"stress\""));
   }
   if (p.precompression > kMostShortening) {
-    refuse("precompression",
+    refuse("sample.precompression",
            fmt::format("found {:g}, allowed: up to {:g}", p.precompression, kMostShortening));
   }
   if (p.unload == "stress" && shears(p)) {
-    refuse("unload",
+    refuse("sample.unload",
            "found \"stress\", allowed with sample.deformation = \"simple_shear\": none, "
            "strain, because its axial stress drives nothing");
   }
@@ -153,15 +155,17 @@ void check_path(const SamplePlan& p) {
 // Gravity wants walls in space, and something that calms the grains.
 void check_drop(const SamplePlan& p) {
   if (!is_dropped(p)) return;
-  if (p.dim != 3) refuse("filling", "found \"dropped\", allowed with sample.dim = 2: placed");
+  if (p.dim != 3)
+    refuse("sample.filling", "found \"dropped\", allowed with sample.dim = 2: placed");
   if (is_periodic(p)) {
-    refuse("filling",
+    refuse("sample.filling",
            "found \"dropped\", allowed with sample.boundary = \"periodic\": placed, because a cell "
            "has no floor");
   }
   if (p.base_fraction <= p.start_fraction) {
-    refuse("base_fraction", fmt::format("found {:g}, allowed: above sample.start_fraction = {:g}",
-                                        p.base_fraction, p.start_fraction));
+    refuse("sample.base_fraction",
+           fmt::format("found {:g}, allowed: above sample.start_fraction = {:g}", p.base_fraction,
+                       p.start_fraction));
   }
 }
 
@@ -177,7 +181,7 @@ void check_probes(const SampleSetup& s) {
   const SamplePlan& p = s.plan;
   if (p.probe == "none") return;
   if (p.dim != 3) {
-    refuse("probe", fmt::format("found \"{}\", allowed with sample.dim = 2: none", p.probe));
+    refuse("sample.probe", fmt::format("found \"{}\", allowed with sample.dim = 2: none", p.probe));
   }
   if (!(s.rest.background_damping > 0)) {
     throw std::invalid_argument(fmt::format(
@@ -191,20 +195,22 @@ void check_strains(const SamplePlan& p) {
   for (const auto& [key, rate] : {std::pair("compression_rate", p.compression_rate),
                                   std::pair("strain_rate", p.strain_rate)}) {
     if (!(rate > 0 && std::isfinite(rate))) {
-      refuse(key, fmt::format("found {:g} 1/s, allowed: above 0", rate));
+      refuse(std::string("sample.") + key, fmt::format("found {:g} 1/s, allowed: above 0", rate));
     }
   }
   if (p.compress_to == "solid_fraction" && p.solid_fraction <= p.start_fraction) {
-    refuse("solid_fraction", fmt::format("found {:g}, allowed: above sample.start_fraction = {:g}",
-                                         p.solid_fraction, p.start_fraction));
+    refuse("sample.solid_fraction",
+           fmt::format("found {:g}, allowed: above sample.start_fraction = {:g}", p.solid_fraction,
+                       p.start_fraction));
   }
   if (p.deformation != "simple_shear" && p.strain > kMostShortening) {
-    refuse("strain", fmt::format("found {:g}, allowed with sample.deformation = \"{}\": up to {:g}",
-                                 p.strain, p.deformation, kMostShortening));
+    refuse("sample.strain",
+           fmt::format("found {:g}, allowed with sample.deformation = \"{}\": up to {:g}", p.strain,
+                       p.deformation, kMostShortening));
   }
   if (p.deformation == "simple_shear" && p.boundary == "walls" && p.sides == "tilting" &&
       p.strain > kMostTilt) {
-    refuse("strain",
+    refuse("sample.strain",
            fmt::format("found {:g}, allowed with sample.sides = \"tilting\": up to {:g}; a "
                        "periodic cell shears without end",
                        p.strain, kMostTilt));
@@ -246,7 +252,7 @@ void check_size(const SamplePlan& p, const std::array<double, 3>& box) {
     const double edge = box[a] * shrunk(p, a, volume_share(p));
     if (edge >= needed) continue;
     const double factor = std::pow(needed / edge, p.dim);
-    refuse("grains",
+    refuse("sample.grains",
            fmt::format("found {}: the {} is too small for its grains, an edge of {:.3g} m at the "
                        "end with grains of radius {:.3g} m, allowed: {:.3g} m; take {:.0f} grains, "
                        "a more even sample.height_ratio or less strain",
@@ -271,9 +277,10 @@ void check_density(const SamplePlan& p) {
     const double edge =
         (linear ? 1 - found : std::exp(-found)) * std::pow(fraction / kTooDense, 1.0 / power);
     const double most = std::max(0.0, linear ? 1 - edge : -std::log(edge));
-    refuse(key, fmt::format("found {:g}, allowed: up to {:g}; grains would be crushed, they would "
-                            "fill {:.3g} of the {} at least, where {:g} is the most",
-                            found, round_down(most), fraction, walls ? "box" : "cell", kTooDense));
+    refuse(std::string("sample.") + key,
+           fmt::format("found {:g}, allowed: up to {:g}; grains would be crushed, they would "
+                       "fill {:.3g} of the {} at least, where {:g} is the most",
+                       found, round_down(most), fraction, walls ? "box" : "cell", kTooDense));
   };
   if (p.compress_to == "strain") {
     judge("compression_strain", p.compression_strain, least,
@@ -294,7 +301,7 @@ void check_speeds(const SamplePlan& p, const std::array<double, 3>& box, double 
                             : 0.5 * kMostStrainPerStep / time_step;
   const auto check = [&](const char* key, double rate) {
     if (rate <= most) return;
-    refuse(key,
+    refuse(std::string("sample.") + key,
            walls ? fmt::format("found {:g} 1/s: a wall would pass {:.3g} m a step, allowed: up to "
                                "{:g} 1/s, {:g} radii of the smallest grain a step of {:.3g} s",
                                rate, rate * longest * time_step, round_down(most), kMostMove,
@@ -307,7 +314,7 @@ void check_speeds(const SamplePlan& p, const std::array<double, 3>& box, double 
   check("strain_rate", p.strain_rate);
 }
 
-// Of the contacts of a mean grain, as a stress: Pa (N/m).
+// The stiffness of a mean grain's contacts, as a stress: Pa (N/m).
 double stiffness_of(const SampleSetup& s) {
   const double r = sample_radii(s.plan).mean;
   const double k =
@@ -326,7 +333,7 @@ void check_sample(const SampleSetup& s) {
   check_drop(s.plan);
   const double most = kMostLoad * stiffness_of(s);
   if (has_servo(s.plan) && s.plan.pressure > most) {
-    refuse("pressure",
+    refuse("sample.pressure",
            fmt::format("found {:g}, allowed: up to {:g} with contacts of this stiffness (grains "
                        "would overlap by a tenth)",
                        s.plan.pressure, round_down(most)));
@@ -361,7 +368,7 @@ SampleFrame sample_frame(const SampleSetup& s, const GrainExtremes& extremes, do
   const double ramp = p.boundary == "walls" ? 0.5 * p.ramp_time : 0;
   out.deformation_time = p.strain / p.strain_rate + ramp;
   if (p.precompression > 0) out.deformation_time += p.precompression / p.strain_rate + ramp;
-  // Of an unloading to a stress at most, about: the strain.
+  // The strain of an unloading to a stress, at most, about.
   if (unloads(p)) {
     const double back = p.unload == "strain" ? p.unload_strain : 1;
     out.deformation_time += back * p.strain / p.strain_rate + ramp;

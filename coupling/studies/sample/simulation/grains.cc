@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "coupling/studies/sample/simulation/drop.h"
-#include "dem/heap/superellipsoid_family.h"
-#include "dem/packing/loose.h"
+#include "dem/grains/loose.h"
+#include "dem/grains/superellipsoid_family.h"
 #include "dem/space/elementary.h"
 
 namespace grainfield::dem {
@@ -46,7 +46,7 @@ ShapedGrain draw(const SamplePlan& plan, double radius, Random& random) {
   return draw_grain(shape, random);
 }
 
-// Of `grains` bidisperse ones, those that are small.
+// The number of `grains` bidisperse ones that are small.
 int small_ones(const SamplePlan& plan) {
   return static_cast<int>(std::lround(plan.fraction_small * plan.grains));
 }

@@ -7,7 +7,7 @@
 
 #include "coupling/studies/sample/simulation/setup.h"
 #include "dem/engine/engine.h"
-#include "dem/heap/grain_family.h"
+#include "dem/grains/grain_family.h"
 
 namespace grainfield::dem {
 

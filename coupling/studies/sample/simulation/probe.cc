@@ -37,7 +37,7 @@ std::pair<int, int> axes_of(const std::string& direction) {
   return {direction[0] - 'x', direction[1] - 'x'};
 }
 
-// Of a probe's motion.
+// The steps of a probe's motion.
 long steps_of_probe(const SampleSetup& s, double time_step) {
   const double steps = std::ceil(kProbeTime / s.rest.background_damping / time_step);
   return std::max(kProbeSteps, static_cast<long>(steps));
@@ -75,7 +75,7 @@ double probe_time(const SampleSetup& s, double time_step) {
 
 void SampleProber::begin(Engine& engine, const std::string& state, bool held) {
   state_ = state;
-  origin_ = engine.image();
+  origin_ = engine.checkpoint();
   energy_ = engine.measure().elastic_energy;
   number_ = -1;
   engine.set_background_damping(setup_.rest.background_damping);
@@ -155,7 +155,7 @@ bool SampleProber::decide(std::unique_ptr<Engine>& engine, long steps, const Mak
     return true;
   }
   if (number_ < 0) {
-    base_ = engine->image();
+    base_ = engine->checkpoint();
   } else {
     note(*engine, make);
   }

@@ -57,7 +57,7 @@ class SampleProber {
   int count() const { return 2 * static_cast<int>(probe_directions(setup_).size()); }
 
   const SampleSetup& setup_;
-  std::string state_, origin_, base_;  // images: as it came, and calm
+  std::string state_, origin_, base_;  // checkpoints: as it came, and calm
   int number_ = -1;                    // of the probe; -1: before the first one
   Stage stage_ = Stage::calm;
   long steps_ = 0, move_ = 0;  // of the stage; of a motion

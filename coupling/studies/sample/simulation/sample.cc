@@ -135,7 +135,7 @@ class SampleRun final : public ArchivedRun {
   // Steps of the phase until the next state; of an unloading to a stress the steps at which the
   // deformation would have been taken back twice.
   long next_record_ = 0;
-  // Of the servos in the deformation: largest error, sum of squares, and how often measured.
+  // The servos' errors in the deformation: the largest, the sum of squares, and how often measured.
   double stress_error_ = 0, squared_errors_ = 0;
   std::int64_t measured_ = 0;
   std::vector<std::optional<Snapshot>> states_;
@@ -228,9 +228,9 @@ std::unique_ptr<Engine> SampleRun::empty_engine() const {
 
 // The same grains, contacts and walls go on with the friction of the phase.
 void SampleRun::change_friction() {
-  const std::string image = engine_->image();
+  const std::string checkpoint = engine_->checkpoint();
   engine_ = empty_engine();
-  engine_->restore(image);
+  engine_->restore(checkpoint);
 }
 
 long SampleRun::every() const {

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "coupling/studies/sample/simulation/grains.h"
-#include "dem/engine/pair_probe.h"
+#include "dem/engine/pair_contact.h"
 
 namespace grainfield::dem {
 namespace {
@@ -18,7 +18,7 @@ constexpr double kForce2 = 2, kForce3 = 4;
 // without end); of superellipsoids prepared with little friction 0.7 * 8.7/pi = 1.9, and their
 // contacts are flatter, hence stiffer, than those of two spheres.
 constexpr double kBulkOfSuperellipsoids = 2.5;
-// Of the depth: by how much, and within how long, it is changed to see what the force answers.
+// The share by which the depth is changed to see what the force answers.
 constexpr double kNudge = 1e-3;
 
 struct ContactAnswer {
@@ -36,7 +36,7 @@ Outline regular(double radius, int corners) {
   return out;
 }
 
-// Of two mean grains pushed together until they push back with this force.
+// The answer of two mean grains pushed together until they push back with this force.
 ContactAnswer answer_of(const SamplePlan& plan, const EngineSettings& settings, double density,
                         double force) {
   const double r = sample_radii(plan).mean;
@@ -52,14 +52,14 @@ ContactAnswer answer_of(const SamplePlan& plan, const EngineSettings& settings, 
     grain.outline = regular(r, corners);
     touching *= std::cos(std::numbers::pi / corners);
   }
-  const auto probe = make_pair_probe(bare, grain, grain);
+  const auto contact = make_pair_contact(bare, grain, grain);
   const auto push = [&](double depth, double speed) {
     PairState first, second;
     first.velocity.x() = speed;
     second.position.x() = touching - depth;
     second.angle = std::numbers::pi;
-    probe->forget();
-    return probe->at(first, second, 0).normal_force;
+    contact->forget();
+    return contact->at(first, second, 0).normal_force;
   };
   double low = 0, high = r;
   for (int k = 0; k < 60; ++k) {
