@@ -41,7 +41,7 @@ constexpr char kCore[] = "fe_cantelaube_core";
 enum Side : unsigned int { axis, flank, base };
 /// Nodes of the axis' traction, linear in between, when the axis yields.
 constexpr int kAxisNodes = 33;
-/// Of rho g h: misfit of the axis' condition at its nodes that ends the iteration.
+/// Misfit of the axis' condition at its nodes over rho g h that ends the iteration.
 constexpr double kAxisTolerance = 1e-9;
 /// Steps that Anderson's acceleration looks back.
 constexpr int kAxisMemory = 200;
@@ -277,7 +277,7 @@ class CantelaubeCore : public fe::SolvedModel<2> {
     }
     const Eigen::MatrixXd on_ray = solver_->stress_at(ray), on_base = solver_->stress_at(bottom),
                           on_axis = solver_->stress_at(axis_points);
-    // Of the stress along the core's boundary, the component that equilibrium leaves free.
+    // The component of the stress along the core's boundary that equilibrium leaves free.
     double jump = 0, error = 0, mobilised = 0, largest = 0;
     const double s = std::sin(beta_hat_), c = std::cos(beta_hat_);
     const auto along = [&](const Eigen::Vector3d& v) {
@@ -320,10 +320,7 @@ class CantelaubeCore : public fe::SolvedModel<2> {
   Eigen::VectorXd axis_stress_;
 };
 
+const fe::ModelRow core_row{kCore, fe::made<CantelaubeCore>};
+
 }  // namespace
-
-std::unique_ptr<Model> fe::make_cantelaube_core(const Settings& settings) {
-  return std::make_unique<CantelaubeCore>(settings);
-}
-
 }  // namespace grainfield::continuum

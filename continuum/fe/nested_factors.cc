@@ -205,7 +205,7 @@ bool NestedFactors<Scalar>::factorize(const std::vector<double>& matrices,
   for (const double value : matrices) largest = std::max(largest, std::abs(value));
   scale_ = largest > 0 ? 1 / largest : 1;
   for (Front& front : fronts_) front.entries.clear();
-  // Of the fronts of two unknowns of a cell the inner one has both.
+  // The inner one of the fronts of two unknowns of a cell has both.
   for (std::size_t e = 0; e < entries.size(); ++e)
     fronts_[std::min(front_of_[entries[e].row], front_of_[entries[e].column])].entries.push_back(e);
   std::vector<Matrix> left;  // by fronts that are not yet in an outer one

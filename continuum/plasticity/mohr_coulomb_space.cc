@@ -13,7 +13,7 @@ namespace {
 // Principal strains that differ by less than this part of the largest have directions of round-off.
 constexpr double kSameStrain = 1e-12;
 
-// Of the symmetric part of a b^T, as components of a stress.
+// The symmetric part of a b^T, as components of a stress.
 Vector6 product(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   Vector6 out;
   out << a[0] * b[0], a[1] * b[1], a[2] * b[2], 0.5 * (a[1] * b[2] + a[2] * b[1]),
