@@ -13,7 +13,7 @@
 namespace grainfield::continuum {
 namespace {
 
-/// Of the nodes' distance: a point this far beyond the grid is on its border.
+/// A point this part of the nodes' distance beyond the grid is on its border.
 constexpr double kBorder = 1e-6;
 
 /// The moduli of a node; none where the map has no values.

@@ -1,8 +1,10 @@
 // The continuum models that compete for the grains, behind one small interface.
-// A new model is one file that implements Model and one line in continuum/registry.cc.
+// A new model is one file that implements Model and one line in continuum/registry.cc; one of
+// finite elements a row beside its solver in continuum/fe and its ModelInfo in a list there.
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -25,9 +27,15 @@ class BadParameter : public std::invalid_argument {
 /// Where a search for a constant keeps to, ends excluded; of lengths (unit m) over the height h.
 struct SearchRange {
   double least = 0, most = 0;
-  /// Of ratios of moduli: a limit that no material passes; intervals are even in log(value -
+  /// A limit that no material passes, of ratios of moduli: intervals are even in log(value -
   /// floor), so the same for a ratio and its reciprocal. -infinite: even in the value.
   double floor = -std::numeric_limits<double>::infinity();
+};
+
+/// Words of another parameter.
+struct Words {
+  std::string parameter;
+  std::vector<std::string> any_of;
 };
 
 /// A parameter of a model, declared once: checks, documentation and command line come from it.
@@ -42,6 +50,7 @@ struct Parameter {
   bool whole = false;                ///< only whole numbers
   std::optional<SearchRange> free = {};  ///< may be free in a fit: a constant of the material or an
                                          ///< angle of the model
+  std::optional<Words> only_with = {};   ///< has no effect beside others
 };
 
 /// Values chosen by the user: numbers as text or words, by parameter name.
@@ -90,14 +99,28 @@ struct Figure {
   std::string meaning;
 };
 
-/// What the registry knows of a model before its parameters are set.
+/// Makes a model from complete settings; throws BadParameter.
+using MakeModel = std::function<std::unique_ptr<Model>(const Settings&)>;
+
+/// What a finite-element model begins with.
+struct FirstMesh {
+  double unknowns = 0;
+  std::vector<std::string> parameters;  ///< that make it fine
+};
+
+/// What the registry knows of a model before its parameters are set; settings are complete ones.
 struct ModelInfo {
   std::string name;     ///< as in `grainfield model NAME`
   std::string summary;  ///< one line
   int dim = 2;          ///< of the points: 2, 3, or 0 = decided by parameter "dim"
   std::vector<Parameter> parameters;
-  std::unique_ptr<Model> (*make)(const Settings&);  ///< throws BadParameter
-  std::vector<Figure> figures = {};                 ///< all that Model::figures() may hold
+  MakeModel make = {};
+  std::vector<Figure> figures = {};  ///< all that Model::figures() may hold
+  /// Why a parameter has no effect with these settings and what to do, e.g. "beside map = m.csv,
+  /// which replaces it; leave one of the two out"; empty: it has one. Besides Parameter::only_with.
+  std::function<std::string(const std::string& parameter, const Settings&)> without_effect = {};
+  /// What it costs, told before anything is allocated. Throws BadParameter where there is no mesh.
+  std::function<FirstMesh(const Settings&)> first_mesh = {};
 };
 
 /// Every model, in the order of the documentation.

@@ -2,12 +2,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <utility>
 
 #include "continuum/closed/models.h"
-#include "continuum/fe/elastic.h"
+#include "continuum/fe_models.h"
 #include "continuum/model.h"
 #include "continuum/osl/models.h"
 #include "continuum/own_models.h"
@@ -20,58 +19,34 @@ namespace grainfield::continuum {
 namespace {
 
 std::vector<ModelInfo> shipped_models() {
-  return {flamant_info(),
-          boussinesq_info(),
-          transverse_half_space_info(),
-          transverse_layer_info(),
-          layer_info(),
-          hydrostatic_info(),
-          liffman_info(),
-          cantelaube_info(),
-          cantelaube_asymmetric_info(),
-          osl_info(),
-          fpa_info(),
-          bcc_info(),
-          ife_info(),
-          cone_osl_info(),
-          cone_fpa_info(),
-          cone_bcc_info(),
-          osl_layer_info(),
-          orthotropic_half_plane_info(),
-          orthotropic_layer_info(),
-          fe_elastic_layer_info(),
-          fe_orthotropic_layer_info(),
-          fe_elastic_half_space_info(),
-          fe_transverse_layer_info(),
-          fe_transverse_half_space_info(),
-          fe_cantelaube_core_info(),
-          fe_osl_wedge_info(),
-          fe_osl_layer_info(),
-          fe_mohr_coulomb_wedge_info(),
-          fe_cone_info()};
+  std::vector<ModelInfo> all{flamant_info(),
+                             boussinesq_info(),
+                             transverse_half_space_info(),
+                             transverse_layer_info(),
+                             layer_info(),
+                             hydrostatic_info(),
+                             liffman_info(),
+                             cantelaube_info(),
+                             cantelaube_asymmetric_info(),
+                             osl_info(),
+                             fpa_info(),
+                             bcc_info(),
+                             ife_info(),
+                             cone_osl_info(),
+                             cone_fpa_info(),
+                             cone_bcc_info(),
+                             osl_layer_info(),
+                             orthotropic_half_plane_info(),
+                             orthotropic_layer_info()};
+  for (const auto& group : {elastic_models(), osl_models(), heap_models()})
+    all.insert(all.end(), group.begin(), group.end());
+  return all;
 }
 
+// Never destroyed: added models may hold what ends before this library.
 std::vector<ModelInfo>& all_models() {
-  static std::vector<ModelInfo> models = shipped_models();
-  return models;
-}
-
-// Factories of the added models. Never destroyed: they may hold what ends before this
-// library.
-std::array<MakeModel, kMostOwnModels>& own_makers() {
-  static auto* const makers = new std::array<MakeModel, kMostOwnModels>;
-  return *makers;
-}
-
-// ModelInfo::make is a plain function: one for each place among the added models.
-template <std::size_t k>
-std::unique_ptr<Model> make_own(const Settings& settings) {
-  return own_makers()[k](settings);
-}
-
-template <std::size_t... k>
-constexpr auto plain_makers(std::index_sequence<k...>) {
-  return std::array{&make_own<k>...};
+  static auto* const models = new std::vector(shipped_models());
+  return *models;
 }
 
 void require_plain_name(const std::string& name) {
@@ -87,26 +62,16 @@ void require_plain_name(const std::string& name) {
 
 const std::vector<ModelInfo>& registry() { return all_models(); }
 
-void add_own_model(ModelInfo info, MakeModel make) {
-  static const std::size_t shipped = all_models().size();
+void add_own_model(ModelInfo info) {
+  static const auto shipped = static_cast<std::ptrdiff_t>(all_models().size());
   std::vector<ModelInfo>& models = all_models();
   require_plain_name(info.name);
   const auto there = std::find_if(models.begin(), models.end(),
                                   [&](const ModelInfo& one) { return one.name == info.name; });
-  const auto at = static_cast<std::size_t>(there - models.begin());
-  if (at < shipped) {
+  if (there - models.begin() < shipped)
     throw BadParameter(fmt::format(
         "model: found the name '{}', which grainfield's own model has, allowed: another",
         info.name));
-  }
-  const std::size_t place = at - shipped;
-  if (place == kMostOwnModels) {
-    throw BadParameter(fmt::format("model {}: found {} models that were added, allowed: as many",
-                                   info.name, kMostOwnModels));
-  }
-  static constexpr auto makers = plain_makers(std::make_index_sequence<kMostOwnModels>());
-  info.make = makers[place];
-  own_makers()[place] = std::move(make);
   if (there == models.end()) {
     models.push_back(std::move(info));
   } else {

@@ -119,6 +119,17 @@ Parameter may_be_free(Parameter parameter, double least, double most, double flo
   return parameter;
 }
 
+Parameter only_with(Parameter parameter, std::string other, std::vector<std::string> words) {
+  parameter.only_with = Words{std::move(other), std::move(words)};
+  return parameter;
+}
+
+std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> parts) {
+  std::vector<Parameter> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 Parameter whole_number(std::string name, std::string meaning, std::string source, int value,
                        int least, int most) {
   Parameter parameter =
@@ -177,6 +188,11 @@ Settings complete(const ModelInfo& info, const Settings& settings) {
 
 double number_of(const Settings& settings, const std::string& name) {
   return parse_number(settings.at(name)).value_or(0);
+}
+
+double nonzero_or(const Settings& settings, const std::string& name, double standard) {
+  const double value = number_of(settings, name);
+  return value == 0 ? standard : value;
 }
 
 }  // namespace grainfield::continuum

@@ -1,5 +1,6 @@
 // What a model's maker needs to read its settings and to declare its parameters.
 #pragma once
+#include <initializer_list>
 #include <limits>
 #include <string>
 
@@ -23,15 +24,19 @@ Parameter optional_number(std::string name, std::string unit, std::string meanin
 /// The same parameter, which may be free in a fit: the search keeps to least < value < most.
 Parameter may_be_free(Parameter parameter, double least, double most,
                       double floor = -std::numeric_limits<double>::infinity());
+/// The same parameter, without effect unless the parameter `other` is one of these words.
+Parameter only_with(Parameter parameter, std::string other, std::vector<std::string> words);
 /// A numerical parameter that takes whole numbers only.
 Parameter whole_number(std::string name, std::string meaning, std::string source, int value,
                        int least, int most);
 /// A parameter of any text, e.g. a file, empty by default; its unit is "text".
 Parameter text(std::string name, std::string meaning, std::string source);
-bool is_text(const Parameter& parameter);
 /// A parameter of words; the first choice is the default.
 Parameter choice(std::string name, std::string meaning, std::string source,
                  std::vector<std::string> choices);
+bool is_text(const Parameter& parameter);
+/// All of these, in their order.
+std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> parts);
 
 /// The settings with every missing parameter at its default. Throws BadParameter naming the model,
 /// the parameter, the value found, what is allowed and the nearest valid name or choice.
@@ -39,5 +44,7 @@ Settings complete(const ModelInfo& info, const Settings& settings);
 
 /// The number of a parameter in settings that complete() returned.
 double number_of(const Settings& settings, const std::string& name);
+/// The same, or `standard` where it is 0.
+double nonzero_or(const Settings& settings, const std::string& name, double standard);
 
 }  // namespace grainfield::continuum

@@ -10,9 +10,11 @@ namespace grainfield::continuum {
 /// to two gigabytes of matrices.
 inline constexpr double kMostUnknowns = 2e6;
 
+Parameter most_unknowns();
+
 /// Throws BadParameter naming the parameters of the mesh that a finite-element model would begin
-/// with, settings as complete() returns them, where its unknowns take more than a machine of 4 GB
-/// has. Other models pass.
+/// with (ModelInfo::first_mesh), settings as complete() returns them, where its unknowns take more
+/// than a machine of 4 GB has. Other models pass.
 void require_possible(const ModelInfo& info, const Settings& complete);
 
 /// Throws ComputationFailed "NAME: ..." when a mesh that is about to be refined would have more

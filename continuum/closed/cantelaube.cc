@@ -8,6 +8,7 @@
 #include "continuum/closed/models.h"
 #include "continuum/constants.h"
 #include "continuum/settings.h"
+#include "continuum/without_effect.h"
 
 namespace grainfield::continuum {
 namespace {
@@ -105,7 +106,12 @@ ModelInfo cantelaube_info() {
                {"a1", "-", "core: sigma_yy under the axis = (a1 - 1) rho g depth (Roul 4.11)"},
                {"a2", "-", "core: sigma_xx = (a2 - 1) rho g depth"},
                {"b1", "-", "core: kink of sigma_yy at the axis; below 0 a dip"},
-               yield_figure("flanks and a yielding axis")})};
+               yield_figure("flanks and a yielding axis")}),
+          [](const std::string& parameter, const Settings& s) -> std::string {
+            const bool chosen = !std::isnan(number_of(s, "beta_hat_deg"));
+            if (parameter != "branch" || !chosen) return {};
+            return replaced_by("beta_hat_deg", s, "its angle");
+          }};
 }
 
 }  // namespace grainfield::continuum

@@ -331,12 +331,14 @@ ModelInfo cantelaube_asymmetric_info() {
               "zero: one linear core, which continuity determines; minus, plus: a core that yields "
               "on an inner ray, with a dip or a peak there",
               "Roul, below 4.12", {"zero", "minus", "plus"}),
-       may_be_free(
-           number("yield_ray_deg", "deg",
-                  "branches minus and plus: angle of the inner ray from the downward vertical, "
-                  "positive to the right",
-                  "Roul 4.3", 0, -89, 89),
-           -89, 89),
+       only_with(
+           may_be_free(
+               number("yield_ray_deg", "deg",
+                      "branches minus and plus: angle of the inner ray from the downward vertical, "
+                      "positive to the right",
+                      "Roul 4.3", 0, -89, 89),
+               -89, 89),
+           "branch", {"minus", "plus"}),
        choice("left_root",
               "which root of the yield condition the left flank takes; the same at "
               "slope phi_deg",

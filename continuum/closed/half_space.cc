@@ -54,16 +54,15 @@ ModelInfo flamant_info() {
 }
 
 ModelInfo boussinesq_info() {
-  return {
-      "boussinesq",
-      "elastic half space under a point load",
-      3,
-      {number("F", "N", "load at the origin, down", "Boussinesq 1885", 1, 0, kUnbounded),
-       number("nu", "-", "Poisson's ratio; the vertical stresses do not depend on it",
-              "Boussinesq 1885", 0.3, 0, 0.5)},
-      [](const Settings& s) -> std::unique_ptr<Model> {
-        return std::make_unique<Boussinesq>(number_of(s, "F"), number_of(s, "nu"));
-      }};
+  return {"boussinesq",
+          "elastic half space under a point load",
+          3,
+          {number("F", "N", "load at the origin, down", "Boussinesq 1885", 1, 0, kUnbounded),
+           number("nu", "-", "Poisson's ratio; the vertical stresses do not depend on it",
+                  "Boussinesq 1885", 0.3, 0, 0.5)},
+          [](const Settings& s) -> std::unique_ptr<Model> {
+            return std::make_unique<Boussinesq>(number_of(s, "F"), number_of(s, "nu"));
+          }};
 }
 
 }  // namespace grainfield::continuum

@@ -158,6 +158,15 @@ ModelInfo liffman_info() {
         heap.top_alpha = top > 0 ? top : heap.alpha;
         heap.bend = number_of(s, "bend") * heap.width;
         return std::make_unique<Liffman>(heap, number_of(s, "chi_g"), number_of(s, "spacing"));
+      },
+      {},
+      [](const std::string& parameter, const Settings& s) -> std::string {
+        const double top = number_of(s, "top_alpha_deg"), bend = number_of(s, "bend");
+        if (parameter == "bend" && top == 0)
+          return "with top_alpha_deg = 0, a triangle; leave it out or set top_alpha_deg";
+        if (parameter == "top_alpha_deg" && top != 0 && bend == 0.5)
+          return "with bend = 0.5, on the axis; leave it out or set bend below 0.5";
+        return {};
       }};
 }
 

@@ -12,7 +12,7 @@
 namespace grainfield::continuum {
 namespace {
 
-/// Of the integral along the angle: bisections, where strains are steep, and relative error.
+/// Bisections of the integral along the angle, where strains are steep, and its relative error.
 constexpr unsigned kIntegralDepth = 12;
 constexpr double kIntegralTolerance = 1e-11;
 
@@ -113,6 +113,15 @@ std::array<double, 2> orthotropic_displacement(double F, const PlaneModuli& modu
   return u;
 }
 
+std::string ratios_beside_moduli(const std::string& parameter, const Settings& s) {
+  if (parameter != "r" && parameter != "t") return {};
+  for (const char* modulus : {"E_x", "E_y", "G"})
+    if (!std::isnan(number_of(s, modulus)))
+      return fmt::format("beside {} = {}, which replaces it; leave it out, or E_x, E_y and G",
+                         modulus, s.at(modulus));
+  return {};
+}
+
 ModelInfo orthotropic_half_plane_info() {
   const char* source = "Otto et al. 2003";
   return {
@@ -136,7 +145,14 @@ ModelInfo orthotropic_half_plane_info() {
       {{"r", "-", "(E_x/G - 2 nu_xy)/2"},
        {"t", "-", "E_x/E_y"},
        {"peaks", "-", "peaks of the pressure at any depth"},
-       {"peak_at_over_depth", "-", "their distance from the axis over the depth"}}};
+       {"peak_at_over_depth", "-", "their distance from the axis over the depth"}},
+      [](const std::string& parameter, const Settings& s) -> std::string {
+        // In a closed layer nu_xy counts on a rough base, which a run may fill in later: it is not
+        // refused there.
+        if (parameter == "nu_xy" && std::isnan(number_of(s, "E_x")))
+          return "beside r and t; leave it out or set E_x, E_y and G";
+        return ratios_beside_moduli(parameter, s);
+      }};
 }
 
 }  // namespace grainfield::continuum

@@ -51,6 +51,9 @@ inline Orthotropy orthotropy(const PlaneModuli& m) {
 /// naming the model when there are some of the three only.
 Orthotropy orthotropy(const std::string& model, const Settings& settings);
 
+/// Why r or t has no effect beside moduli (ModelInfo::without_effect).
+std::string ratios_beside_moduli(const std::string& parameter, const Settings& complete);
+
 /// Displacement x, y at x, y (y <= 0, not both 0) of the half plane under the line load F, for
 /// stable moduli. Like Flamant's it grows with the logarithm of distance; the point at unit
 /// distance below the load stays at rest. The strain is e(theta)/r, so that u = c log r + g(theta),

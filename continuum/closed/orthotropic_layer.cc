@@ -5,11 +5,11 @@
 #include <Eigen/LU>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "continuum/closed/models.h"
+#include "continuum/constants.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
@@ -19,40 +19,39 @@ using Gauss = boost::math::quadrature::gauss<double, 30>;
 
 /// Values that differ from the base's height by less than this part of h are on the base.
 constexpr double kOnBase = 1e-9;
-/// As in layer.cc, the tail that is left out (1e-15 of the peak) and what 30 Gauss points carry.
-constexpr double kDecay = 34, kPanelPhase = 6, kPanelWidth = 2;
+/// The integrand's tail beyond exp(-34) is left out (1e-15 of the peak).
+constexpr double kDecay = 34;
+/// Panels: 30 Gauss points carry 6 rad of cos(k x) and 2 units of u (the integrand's poles are at
+/// least 0.9 away from the real axis in an isotropic layer) to round-off.
+constexpr double kPanelPhase = 6, kPanelWidth = 2;
 /// Nearer to the hyperbolic limit r = -sqrt(t) the integrand decays too slowly to be summed.
 constexpr double kLeastRatio = -0.99;
 
-class OrthotropicLayer : public Model {
+class LayerInPlane : public Model {
  public:
-  OrthotropicLayer(double load, double depth, const Orthotropy& o, double nu, bool rough)
-      : load_(load), h_(depth), o_(o), waves_(o, nu, rough) {}
+  LayerInPlane(double load, double depth, const Orthotropy& medium, const OrthotropicWaves& waves,
+               std::map<std::string, double> figures)
+      : load_(load), h_(depth), medium_(medium), waves_(waves), figures_(std::move(figures)) {}
 
   Stresses stress(const Points& points) override {
-    Stresses out = Stresses::Constant(points.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+    Stresses out = Stresses::Constant(points.rows(), 3, kNan);
     std::vector<Eigen::Index> inside;
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
       const double x = points(i, 0), y = points(i, 1);
       if (y < 0 && y >= -h_ * (1 + kOnBase) && std::isfinite(x)) inside.push_back(i);
     }
-    Points there(inside.size(), 2);
-    for (std::size_t k = 0; k < inside.size(); ++k) {
-      there.row(static_cast<Eigen::Index>(k)) << points(inside[k], 0),
-          std::max(points(inside[k], 1), -h_);
-    }
-    const Stresses found = orthotropic_layer_stress(waves_, o_, load_, h_, there);
-    for (std::size_t k = 0; k < inside.size(); ++k) {
-      out.row(inside[k]) = found.row(static_cast<Eigen::Index>(k));
-    }
+    Points there = points(inside, Eigen::all);
+    there.col(1) = there.col(1).cwiseMax(-h_);
+    out(inside, Eigen::all) = orthotropic_layer_stress(waves_, medium_, load_, h_, there);
     return out;
   }
-  std::map<std::string, double> figures() const override { return {{"r", o_.r}, {"t", o_.t}}; }
+  std::map<std::string, double> figures() const override { return figures_; }
 
  private:
   double load_, h_;
-  Orthotropy o_;
+  Orthotropy medium_;
   OrthotropicWaves waves_;
+  std::map<std::string, double> figures_;
 };
 
 std::unique_ptr<Model> make(const Settings& s) {
@@ -71,7 +70,8 @@ std::unique_ptr<Model> make(const Settings& s) {
                     "{:.6g}; allowed: "
                     "above -r and from -sqrt(t) to sqrt(t)",
                     nu, o.r, o.t));
-  return std::make_unique<OrthotropicLayer>(number_of(s, "F"), number_of(s, "h"), o, nu, rough);
+  return layer_in_plane(number_of(s, "F"), number_of(s, "h"), o, {o, nu, rough},
+                        {{"r", o.r}, {"t", o.t}});
 }
 
 }  // namespace
@@ -139,14 +139,32 @@ Eigen::Vector4d OrthotropicWaves::coefficients(double u) const {
   return matrix.partialPivLu().solve(right);
 }
 
-void OrthotropicWaves::add_of_base(
-    double u, const Eigen::ArrayXd& share,
-    const std::function<void(Eigen::Index, double, double, double)>& take) const {
+void OrthotropicWaves::add_base(double u, double weight, const Eigen::ArrayXd& share,
+                                const Take& take) const {
   const Eigen::Vector4d c = coefficients(u);
   for (Eigen::Index k = 0; k < share.size(); ++k) {
     if (u * decay() * (2 - share[k]) > kDecay) continue;
     const Values v = reflected(c, u * share[k], u);
-    take(k, v.g2, v.g, v.g1);
+    take(k, u, weight, v.g2, v.g, v.g1);
+  }
+}
+
+void OrthotropicWaves::integrate_base(const Eigen::ArrayXd& share, double phase,
+                                      const Take& take) const {
+  const double end = kDecay / (decay() * (2 - share.maxCoeff()));
+  // Towards the hyperbolic limit the integrand's poles approach the real axis like the decay.
+  const double width =
+      std::min({kPanelWidth, kPanelPhase / std::max(phase + 2 * oscillation(), 1e-3),
+                kPanelWidth * decay()});
+  const int panels = static_cast<int>(std::ceil(end / width));
+  const double half = 0.5 * end / panels;
+  for (int panel = 0; panel < panels; ++panel) {
+    const double middle = (2 * panel + 1) * half;
+    for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
+      const double aside = half * Gauss::abscissa()[i], weight = half * Gauss::weights()[i];
+      add_base(middle + aside, weight, share, take);
+      add_base(middle - aside, weight, share, take);
+    }
   }
 }
 
@@ -174,28 +192,13 @@ Eigen::MatrixX3d orthotropic_layer_stress(const OrthotropicWaves& waves, const O
   const auto n = points.rows();
   if (n == 0) return Eigen::MatrixX3d(0, 3);
   const Eigen::ArrayXd x = points.col(0).array() / h, share = -points.col(1).array() / h;
-  const double phase = x.abs().maxCoeff();
-  const double end = kDecay / (waves.decay() * (2 - share.maxCoeff()));
-  // Towards the hyperbolic limit the integrand's poles approach the real axis like the decay.
-  const double width =
-      std::min({kPanelWidth, kPanelPhase / std::max(phase + 2 * waves.oscillation(), 1e-3),
-                kPanelWidth * waves.decay()});
-  const int panels = static_cast<int>(std::ceil(end / width));
-  const double half = 0.5 * end / panels;
   Eigen::MatrixX3d sum = Eigen::MatrixX3d::Zero(n, 3);
-  const auto add = [&](double u, double weight) {
-    waves.add_of_base(u, share, [&](Eigen::Index k, double g2, double g, double g1) {
-      const double c = weight * std::cos(u * x[k]), s = weight * std::sin(u * x[k]);
-      sum.row(k) += Eigen::RowVector3d(c * g2, c * g, s * g1);
-    });
-  };
-  for (int panel = 0; panel < panels; ++panel) {
-    const double middle = (2 * panel + 1) * half;
-    for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
-      add(middle + half * Gauss::abscissa()[i], half * Gauss::weights()[i]);
-      add(middle - half * Gauss::abscissa()[i], half * Gauss::weights()[i]);
-    }
-  }
+  waves.integrate_base(
+      share, x.abs().maxCoeff(),
+      [&](Eigen::Index k, double u, double weight, double g2, double g, double g1) {
+        const double c = weight * std::cos(u * x[k]), s = weight * std::sin(u * x[k]);
+        sum.row(k) += Eigen::RowVector3d(c * g2, c * g, s * g1);
+      });
   sum *= F / (std::numbers::pi * h);
   Eigen::MatrixX3d out(n, 3);
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -204,6 +207,12 @@ Eigen::MatrixX3d orthotropic_layer_stress(const OrthotropicWaves& waves, const O
     out.row(k) << plane[0] + sum(k, 0), plane[1] - sum(k, 1), plane[2] - sum(k, 2);
   }
   return out;
+}
+
+std::unique_ptr<Model> layer_in_plane(double F, double h, const Orthotropy& medium,
+                                      const OrthotropicWaves& waves,
+                                      std::map<std::string, double> figures) {
+  return std::make_unique<LayerInPlane>(F, h, medium, waves, std::move(figures));
 }
 
 ModelInfo orthotropic_layer_info() {
@@ -231,7 +240,8 @@ ModelInfo orthotropic_layer_info() {
            -0.95, 0.95),
        choice("base", "smooth: no shear; rough: no displacement", "Roul 5.6", {"smooth", "rough"})},
       make,
-      {{"r", "-", "(E_x/G - 2 nu_xy)/2"}, {"t", "-", "E_x/E_y"}}};
+      {{"r", "-", "(E_x/G - 2 nu_xy)/2"}, {"t", "-", "E_x/E_y"}},
+      ratios_beside_moduli};
 }
 
 }  // namespace grainfield::continuum

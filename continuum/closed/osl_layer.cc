@@ -121,8 +121,9 @@ ModelInfo osl_layer_info() {
        choice("base",
               "absorbing: takes up what arrives; reflecting: bears no shear and sends pulses back",
               "hyperbolic layer", {"absorbing", "reflecting"}),
-       whole_number("returns", "reflecting base: how often pulses come back from it",
-                    "hyperbolic layer", 1, 1, 1000)},
+       only_with(whole_number("returns", "reflecting base: how often pulses come back from it",
+                              "hyperbolic layer", 1, 1, 1000),
+                 "base", {"reflecting"})},
       make,
       {{"c1", "-", "dx/d(depth) of the characteristic to the right"},
        {"c2", "-", "dx/d(depth) of the characteristic to the left"}}};

@@ -28,8 +28,8 @@ struct TransverseModuli {
 
   /// Whether every strain takes work.
   bool is_stable() const;
-  /// Of a vertical plane that does not strain across itself; x horizontal, y vertical. Across it is
-  /// then nu_h s_xx + nu_v E_h/E_v s_yy.
+  /// Moduli of a vertical plane that does not strain across itself; x horizontal, y vertical. The
+  /// stress across it is then nu_h s_xx + nu_v E_h/E_v s_yy.
   PlaneModuli plane_strain() const;
   /// Stress xx, yy, zz, yz, xz, xy of the strains xx, yy, zz, 2 yz, 2 xz, 2 xy; z vertical, Pa.
   Eigen::Matrix<double, 6, 6> stiffness() const;

@@ -1,24 +1,13 @@
-// Elastic layer of depth h on a rigid base under a point load, the same in every horizontal
-// direction: the material of transverse.h, the plane waves of orthotropic_layer.h, and layer.cc's
-// mean over their directions.
-//
-// A wave along x, g cos(k x), is one of plane strain: its crests carry
-//   sigma_yy = nu_h sigma_xx + nu_v (E_h/E_v) sigma_zz ~ c = nu_h g'' - nu_v (E_h/E_v) g.
-// The mean over the directions in the plane, with J0 and J1 at k r:
-//   sigma_zz = -(F/2 pi) Int k g J0 dk,   sigma_rd = (F/2 pi) Int k g' J1 dk,
-//   sigma_rr = (F/2 pi) Int k [g'' (J0 - J1/kr) + c J1/kr] dk,
-//   sigma_tt = (F/2 pi) Int k [g'' J1/kr + c (J0 - J1/kr)] dk.
-// The half space's part of g is TransverseHalfSpace, in closed form.
+#include "continuum/closed/transverse_layer.h"
+
 #include <fmt/format.h>
 
-#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "continuum/closed/about_axis.h"
 #include "continuum/closed/models.h"
-#include "continuum/closed/orthotropic_layer.h"
 #include "continuum/closed/transverse.h"
 #include "continuum/constants.h"
 #include "continuum/settings.h"
@@ -26,30 +15,25 @@
 namespace grainfield::continuum {
 namespace {
 
-using Gauss = boost::math::quadrature::gauss<double, 30>;
-
 // As in orthotropic_layer.cc.
 constexpr double kOnBase = 1e-9;
-constexpr double kDecay = 34, kPanelPhase = 6, kPanelWidth = 2;
 constexpr double kLeastRatio = -0.99;
 // Oscillation over decay: up to here the singularity stays a depth away from all depths of the
 // layer.
 constexpr double kMostOscillation = 0.5;
-// Share of the fast wave's decay: from here on about_axis's nodes resolve the depths to round-off.
+// Slow over fast wave's decay: from here on the nodes of about_axis resolve the depths to
+// round-off.
 constexpr double kLeastSlow = 0.5;
 
-class TransverseLayer : public Model {
+class LayerInSpace : public Model {
  public:
-  TransverseLayer(double load, double depth, const TransverseModuli& moduli, bool rough)
+  LayerInSpace(double load, double depth, const OrthotropicWaves& waves, const Crests& crests,
+               HalfSpaceStress half_space)
       : load_(load),
         h_(depth),
-        nu_h_(moduli.nu_h),
-        across_(moduli.nu_v * moduli.E_h / moduli.E_v),
-        waves_(orthotropy(moduli.plane_strain()), moduli.plane_strain().nu_xy, rough),
-        half_space_(load, moduli) {
-    const Orthotropy plane = orthotropy(moduli.plane_strain());
-    mean_decay_ = std::sqrt((plane.r + std::sqrt(plane.t)) / 2);
-  }
+        waves_(waves),
+        crests_(crests),
+        half_space_(std::move(half_space)) {}
 
   Stresses stress(const Points& points) override {
     Stresses out = Stresses::Constant(points.rows(), 6, kNan);
@@ -71,17 +55,16 @@ class TransverseLayer : public Model {
     };
     // A slow wave that the base sends back as a fast one brings the singularity to the depth
     // 1 + slow/fast, and waves that oscillate bring it near, too.
-    const double slow = waves_.decay(), fast = 2 * mean_decay_ - slow;
+    const double slow = waves_.decay();
     const bool smooth =
-        waves_.oscillation() <= kMostOscillation * slow && slow >= kLeastSlow * fast;
+        waves_.oscillation() <= kMostOscillation * slow && slow >= kLeastSlow * waves_.fast_decay();
     const Eigen::ArrayX4d base =
-        smooth ? about_axis(field, std::min(1.0, waves_.decay()), radius, share)
-               : of_base(radius, share);
+        smooth ? about_axis(field, std::min(1.0, slow), radius, share) : of_base(radius, share);
     for (Eigen::Index k = 0; k < n; ++k) {
       const auto i = inside[static_cast<std::size_t>(k)];
       const double x = points(i, 0), y = points(i, 1), r = radius[k] * h_;
       const double c = r > 0 ? x / r : 1, s = r > 0 ? y / r : 0;
-      const auto half = half_space_.stress(x, y, -share[k] * h_);
+      const auto half = half_space_(x, y, -share[k] * h_);
       const double rr = base(k, 0), tt = base(k, 1), zz = base(k, 2), rz = base(k, 3);
       const double added[6] = {rr * c * c + tt * s * s, rr * s * s + tt * c * c, zz, rz * s, rz * c,
                                (rr - tt) * c * s};
@@ -93,38 +76,26 @@ class TransverseLayer : public Model {
  private:
   /// What the base adds at these radii and depths over h: rr, tt, zz, rz (z up), Pa.
   Eigen::ArrayX4d of_base(const Eigen::ArrayXd& radius, const Eigen::ArrayXd& share) const {
-    const double end = kDecay / (waves_.decay() * (2 - share.maxCoeff()));
-    const double phase = radius.maxCoeff() + 2 * waves_.oscillation();
-    const double width =
-        std::min({kPanelWidth, kPanelPhase / std::max(phase, 1e-3), kPanelWidth * waves_.decay()});
-    const int panels = static_cast<int>(std::ceil(end / width));
-    const double half = 0.5 * end / panels;
     Eigen::ArrayX4d sum = Eigen::ArrayX4d::Zero(radius.size(), 4);
-    const auto add = [&](double u, double weight) {
-      const double k = weight * u;
-      waves_.add_of_base(u, share, [&](Eigen::Index i, double g2, double g, double g1) {
-        const double at = u * radius[i], j0 = ::j0(at), j1 = ::j1(at);
-        const double beside = at > 1e-4 ? j1 / at : 0.5 - at * at / 16, ahead = j0 - beside;
-        const double crest = nu_h_ * g2 - across_ * g;
-        sum(i, 0) += k * (g2 * ahead + crest * beside);
-        sum(i, 1) += k * (g2 * beside + crest * ahead);
-        sum(i, 2) -= k * g * j0;
-        sum(i, 3) -= k * g1 * j1;  // changes sign with the axis that points up
-      });
-    };
-    for (int panel = 0; panel < panels; ++panel) {
-      const double middle = (2 * panel + 1) * half;
-      for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
-        add(middle + half * Gauss::abscissa()[i], half * Gauss::weights()[i]);
-        add(middle - half * Gauss::abscissa()[i], half * Gauss::weights()[i]);
-      }
-    }
+    waves_.integrate_base(
+        share, radius.maxCoeff(),
+        [&](Eigen::Index i, double u, double weight, double g2, double g, double g1) {
+          const double k = weight * u;
+          const double at = u * radius[i], j0 = ::j0(at), j1 = ::j1(at);
+          const double beside = at > 1e-4 ? j1 / at : 0.5 - at * at / 16, ahead = j0 - beside;
+          const double crest = crests_.nu_h * g2 - crests_.across * g;
+          sum(i, 0) += k * (g2 * ahead + crest * beside);
+          sum(i, 1) += k * (g2 * beside + crest * ahead);
+          sum(i, 2) -= k * g * j0;
+          sum(i, 3) -= k * g1 * j1;  // changes sign with the axis that points up
+        });
     return sum * (load_ / (2 * std::numbers::pi * h_ * h_));
   }
 
-  double load_, h_, nu_h_, across_, mean_decay_ = 1;
+  double load_, h_;
   OrthotropicWaves waves_;
-  TransverseHalfSpace half_space_;
+  Crests crests_;
+  HalfSpaceStress half_space_;
 };
 
 std::unique_ptr<Model> make(const Settings& s) {
@@ -137,11 +108,21 @@ std::unique_ptr<Model> make(const Settings& s) {
                     "r = {:.6g} of its vertical planes; allowed: above {:g} sqrt(t) = {:.6g}",
                     m.G_v, plane.r, kLeastRatio, least));
   }
-  return std::make_unique<TransverseLayer>(number_of(s, "F"), number_of(s, "h"), m,
-                                           s.at("base") == "rough");
+  const double F = number_of(s, "F");
+  return layer_in_space(F, number_of(s, "h"),
+                        {plane, m.plane_strain().nu_xy, s.at("base") == "rough"},
+                        {m.nu_h, m.nu_v * m.E_h / m.E_v},
+                        [half_space = TransverseHalfSpace(F, m)](double x, double y, double z) {
+                          return half_space.stress(x, y, z);
+                        });
 }
 
 }  // namespace
+
+std::unique_ptr<Model> layer_in_space(double F, double h, const OrthotropicWaves& waves,
+                                      const Crests& crests, HalfSpaceStress half_space) {
+  return std::make_unique<LayerInSpace>(F, h, waves, crests, std::move(half_space));
+}
 
 ModelInfo transverse_layer_info() {
   const char* source = "Elliott 1948, waves of orthotropic_layer";

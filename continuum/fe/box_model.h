@@ -16,12 +16,6 @@ namespace grainfield::continuum::fe {
 /// Values that differ from a border's coordinate by less than this part of the domain are on it.
 inline constexpr double kOnBorder = 1e-9;
 
-/// The parameter's value; 0 stands for the dimension's own default.
-inline double number_or(const Settings& settings, const std::string& name, double fallback) {
-  const double value = number_of(settings, name);
-  return value == 0 ? fallback : value;
-}
-
 /// What layers and half spaces share: the box |x| <= half width (its mirrored half x >= 0, in 3D
 /// also y >= 0), bottom <= vertical <= 0, refinement until the stresses
 /// at probe points stand still, and the way from points of the full space into the meshed part.
@@ -29,10 +23,10 @@ template <int dim>
 class BoxModel : public SolvedModel<dim> {
  public:
   BoxModel(const std::string& name, const Settings& s, double tolerance, int degree)
-      : SolvedModel<dim>(name, static_cast<int>(number_or(s, "degree", degree)),
+      : SolvedModel<dim>(name, static_cast<int>(nonzero_or(s, "degree", degree)),
                          static_cast<int>(number_of(s, "iterations"))),
         load_(number_of(s, "F")),
-        tolerance_(number_or(s, "tolerance", tolerance)),
+        tolerance_(nonzero_or(s, "tolerance", tolerance)),
         refinements_(static_cast<int>(number_of(s, "refinements"))),
         most_unknowns_(number_of(s, "most_unknowns")) {}
 

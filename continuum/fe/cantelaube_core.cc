@@ -41,7 +41,7 @@ constexpr char kCore[] = "fe_cantelaube_core";
 enum Side : unsigned int { axis, flank, base };
 /// Nodes of the axis' traction, linear in between, when the axis yields.
 constexpr int kAxisNodes = 33;
-/// Of rho g h: misfit of the axis' condition at its nodes that ends the iteration.
+/// Misfit of the axis' condition at its nodes over rho g h that ends the iteration.
 constexpr double kAxisTolerance = 1e-9;
 /// Steps that Anderson's acceleration looks back.
 constexpr int kAxisMemory = 200;
@@ -320,10 +320,7 @@ class CantelaubeCore : public fe::SolvedModel<2> {
   Eigen::VectorXd axis_stress_;
 };
 
+const fe::ModelRow core_row{kCore, fe::made<CantelaubeCore>};
+
 }  // namespace
-
-std::unique_ptr<Model> fe::make_cantelaube_core(const Settings& settings) {
-  return std::make_unique<CantelaubeCore>(settings);
-}
-
 }  // namespace grainfield::continuum

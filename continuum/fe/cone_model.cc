@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "continuum/constants.h"
+#include "continuum/fe/plugin.h"
 #include "continuum/fe/wedge.h"
 #include "continuum/settings.h"
 
@@ -83,10 +84,7 @@ class ConeModel : public Model {
   std::unique_ptr<WedgeResult> solved_;
 };
 
+const fe::ModelRow cone_row{"fe_cone", fe::made<ConeModel>};
+
 }  // namespace
-
-std::unique_ptr<Model> make_cone_model(const Settings& settings) {
-  return std::make_unique<ConeModel>(settings);
-}
-
 }  // namespace grainfield::continuum

@@ -19,9 +19,7 @@
 #include "continuum/closed/half_space.h"
 #include "continuum/closed/transverse.h"
 #include "continuum/fe/box_model.h"
-#include "continuum/fe/elastic.h"
 #include "continuum/fe/plugin.h"
-#include "continuum/fe/wedge.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
@@ -30,7 +28,6 @@ namespace {
 using fe::BoxModel;
 using fe::ElasticProblem;
 using fe::kOnBorder;
-using fe::number_or;
 using fe::Stress;
 using fe::Vector;
 template <int dim>
@@ -168,9 +165,9 @@ class ElasticHalfSpace : public BoxModel<dim> {
       : BoxModel<dim>(name, s, dim == 2 ? 2e-3 : 1e-2, 3),
         stiffness_(medium.stiffness),
         depth_(number_of(s, "depth")),
-        patch_(number_or(s, "patch", dim == 2 ? 0.05 : 0.02) * depth_),
-        cells_(number_or(s, "cells", dim == 2 ? 2 : 1)) {
-    const double reach = number_or(s, "radius", dim == 2 ? 1e4 : 50);
+        patch_(nonzero_or(s, "patch", dim == 2 ? 0.05 : 0.02) * depth_),
+        cells_(nonzero_or(s, "cells", dim == 2 ? 2 : 1)) {
+    const double reach = nonzero_or(s, "radius", dim == 2 ? 1e4 : 50);
     if (reach < 4)
       throw BadParameter(fmt::format(
           "model {}: radius = {} is out of range; allowed: 0, or at least 4", name, reach));
@@ -249,25 +246,20 @@ class ElasticHalfSpace : public BoxModel<dim> {
 };
 
 template <template <int> class Kind>
-std::unique_ptr<Model> make(const std::string& name, const Settings& s) {
+std::unique_ptr<Model> make_elastic(const std::string& name, const Settings& s) {
   if (s.at("dim") == "3") return std::make_unique<Kind<3>>(name, s, isotropic<3>(s));
   return std::make_unique<Kind<2>>(name, s, isotropic<2>(s));
 }
 
-}  // namespace
-
-std::unique_ptr<Model> fe::make_model(const std::string& name, const Settings& settings) {
-  if (name == "fe_elastic_layer") return make<ElasticLayer>(name, settings);
-  if (name == "fe_orthotropic_layer") return make_orthotropic_layer(settings);
-  if (name == "fe_cantelaube_core") return make_cantelaube_core(settings);
-  if (name == "fe_elastic_half_space") return make<ElasticHalfSpace>(name, settings);
-  if (name == "fe_transverse_layer")
-    return std::make_unique<ElasticLayer<3>>(name, settings, transverse(name, settings));
-  if (name == "fe_transverse_half_space")
-    return std::make_unique<ElasticHalfSpace<3>>(name, settings, transverse(name, settings));
-  if (name == "fe_mohr_coulomb_wedge") return make_wedge_model(settings);
-  if (name == "fe_cone") return make_cone_model(settings);
-  throw BadParameter("no finite-element model '" + name + "'");
+template <template <int> class Kind>
+std::unique_ptr<Model> make_transverse(const std::string& name, const Settings& s) {
+  return std::make_unique<Kind<3>>(name, s, transverse(name, s));
 }
 
+const fe::ModelRow rows[] = {{"fe_elastic_layer", make_elastic<ElasticLayer>},
+                             {"fe_elastic_half_space", make_elastic<ElasticHalfSpace>},
+                             {"fe_transverse_layer", make_transverse<ElasticLayer>},
+                             {"fe_transverse_half_space", make_transverse<ElasticHalfSpace>}};
+
+}  // namespace
 }  // namespace grainfield::continuum

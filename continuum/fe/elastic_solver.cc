@@ -26,9 +26,9 @@ namespace {
 
 using namespace dealii;
 
-/// Of |b - A x| against |b|: far below any discretization error of interest.
+/// |b - A x| over |b|: far below any discretization error of interest.
 constexpr double kResidual = 1e-10;
-/// Of a cell's diameter: a vertex this near to a pin is the one meant.
+/// A vertex this part of a cell's diameter from a pin is the one meant.
 constexpr double kAtVertex = 1e-6;
 
 double now() {
@@ -73,7 +73,8 @@ class SimilarCells {
   }
 
  private:
-  /// Of the diagonal: round-off of coordinates, amplified for cells far smaller than the domain.
+  /// Part of the diagonal: round-off of coordinates, amplified for cells far smaller than the
+  /// domain.
   static constexpr double kSameShape = 1e-10;
   std::array<Tensor<1, dim>, GeometryInfo<dim>::vertices_per_cell> reference_;
   double reference_size_ = 0;

@@ -57,8 +57,8 @@ struct BoundaryCondition {
   std::array<bool, dim> fixed{};  ///< components of the displacement that are given
   /// Their values; none = 0.
   std::function<Vector<dim>(const dealii::Point<dim>&)> displacement = {};
-  /// Of the components that are not fixed; none = free. With an initial stress: of the whole
-  /// stress.
+  /// Traction of the components that are not fixed, with an initial stress that of the whole
+  /// stress; none = free.
   std::function<Vector<dim>(const dealii::Point<dim>&, const Vector<dim>& normal)> traction = {};
   /// Springs under the components that are not fixed: traction -spring u more, N/m3.
   Vector<dim> spring = {};

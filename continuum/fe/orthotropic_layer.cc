@@ -205,10 +205,7 @@ class OrthotropicLayer : public fe::BoxModel<2> {
   Eigen::Matrix3d stiffness_, compliance_;
 };
 
+const fe::ModelRow orthotropic_row{kOrthotropic, fe::made<OrthotropicLayer>};
+
 }  // namespace
-
-std::unique_ptr<Model> fe::make_orthotropic_layer(const Settings& settings) {
-  return std::make_unique<OrthotropicLayer>(settings);
-}
-
 }  // namespace grainfield::continuum

@@ -34,10 +34,11 @@ class OslElements : public Model {
   std::unique_ptr<fe::OslSolver> solver_;
 };
 
-}  // namespace
-
-std::unique_ptr<Model> fe::make_osl_model(const std::string& name, const Settings& settings) {
+std::unique_ptr<Model> make(const std::string& name, const Settings& settings) {
   return std::make_unique<OslElements>(osl::make_task(name, settings));
 }
 
+const fe::ModelRow rows[] = {{"fe_osl_wedge", make}, {"fe_osl_layer", make}};
+
+}  // namespace
 }  // namespace grainfield::continuum

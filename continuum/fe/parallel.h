@@ -2,7 +2,7 @@
 #pragma once
 #include <mpi.h>
 
-#include "continuum/fe/elastic.h"
+#include "continuum/fe_models.h"
 
 namespace grainfield::continuum::fe {
 

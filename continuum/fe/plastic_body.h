@@ -42,7 +42,7 @@ struct PlasticBody {
   /// Nodal forces of tractions on the boundary, with Simpson's weights.
   Eigen::VectorXd forces_of(const PlasticSolver::Traction& traction) const;
 
-  /// Of forces per area, one for each cell; cells not active have none.
+  /// Nodal forces of forces per area, one for each cell; cells not active have none.
   Eigen::VectorXd forces_of(const std::vector<Eigen::Vector2d>& force) const;
 
   /// Elastic strain at point q of cell c if all that its nodes move by u were elastic.

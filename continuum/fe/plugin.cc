@@ -1,6 +1,22 @@
 #include "continuum/fe/plugin.h"
 
+#include <map>
+
 #include "continuum/fe/block.h"
+
+namespace grainfield::continuum::fe {
+namespace {
+
+std::map<std::string, ModelRow::Make>& rows() {
+  static std::map<std::string, ModelRow::Make> all;
+  return all;
+}
+
+}  // namespace
+
+ModelRow::ModelRow(const std::string& name, Make make) { rows().emplace(name, make); }
+
+}  // namespace grainfield::continuum::fe
 
 /// Looked up by name in the loaded library (fe::kMakeSymbol).
 extern "C" void grainfield_fe_make(const char* name,
@@ -8,10 +24,13 @@ extern "C" void grainfield_fe_make(const char* name,
                                    grainfield::continuum::Ranks ranks,
                                    std::unique_ptr<grainfield::continuum::Model>& model) {
   grainfield::continuum::fe::choose_ranks(ranks);
-  const std::string model_name = name;
-  model = model_name.rfind("fe_osl_", 0) == 0
-              ? grainfield::continuum::fe::make_osl_model(model_name, settings)
-              : grainfield::continuum::fe::make_model(model_name, settings);
+  const auto& rows = grainfield::continuum::fe::rows();
+  const auto row = rows.find(name);
+  if (row == rows.end())
+    throw grainfield::continuum::ComputationFailed("the finite-element library has no model " +
+                                                   std::string(name) +
+                                                   ": it is of another version");
+  model = row->second(name, settings);
 }
 
 /// Likewise (fe::kBlockSymbol).

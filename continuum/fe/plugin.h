@@ -3,20 +3,25 @@
 #include <memory>
 #include <string>
 
-#include "continuum/fe/elastic.h"
-#include "continuum/model.h"
+#include "continuum/fe_models.h"
 #include "continuum/progress.h"
 
 namespace grainfield::continuum::fe {
 
-/// The named model ("fe_elastic_layer") with complete settings. Throws BadParameter.
-std::unique_ptr<Model> make_model(const std::string& name, const Settings& settings);
-/// "fe_orthotropic_layer" with complete settings. Throws BadParameter.
-std::unique_ptr<Model> make_orthotropic_layer(const Settings& settings);
-/// "fe_cantelaube_core" with complete settings. Throws BadParameter.
-std::unique_ptr<Model> make_cantelaube_core(const Settings& settings);
-/// The same for "fe_osl_wedge" and "fe_osl_layer".
-std::unique_ptr<Model> make_osl_model(const std::string& name, const Settings& settings);
+/// A model of the library: an object in the solver's file,
+///     const ModelRow cone_row{"fe_cone", made<ConeModel>};
+/// puts it among those that the library makes. Its ModelInfo is in a list of continuum/fe_models.h.
+struct ModelRow {
+  /// From its name and complete settings; throws BadParameter.
+  using Make = std::unique_ptr<Model> (*)(const std::string& name, const Settings& settings);
+  ModelRow(const std::string& name, Make make);
+};
+
+/// Makes a model of this class from its settings.
+template <class Kind>
+std::unique_ptr<Model> made(const std::string&, const Settings& settings) {
+  return std::make_unique<Kind>(settings);
+}
 
 /// Who solves from now on; see continuum::solve_on.
 void choose_ranks(Ranks ranks);

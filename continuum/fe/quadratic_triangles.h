@@ -58,7 +58,7 @@ struct BoundaryEdge {
 
 class QuadraticTriangles {
  public:
-  /// Of a body of revolution the mesh has x >= 0.
+  /// The mesh of a body of revolution has x >= 0.
   explicit QuadraticTriangles(const TriangleMesh& mesh, bool revolution = false);
   ~QuadraticTriangles();
 

@@ -53,7 +53,7 @@ class Cutter {
     }
   }
 
-  /// Of equally long edges (up to round-off) the one with the least numbers.
+  /// The longest edge; among equally long ones (up to round-off) that with the least numbers.
   Edge longest(int t) {
     constexpr double kEqual = 1e-9;
     Edge best{-1, -1};

@@ -29,9 +29,9 @@ constexpr double kCoreFrom = 0.3, kCoreTo = 0.9;
 constexpr int kCoreDepths = 25, kCoreSamples = 400;
 /// Part of the half width that is left out beside the slope: there is hardly any stress.
 constexpr double kCoreSkin = 0.03;
-/// Of the depths: with a border at fewer of them there is no line through it.
+/// Part of the depths: with a border at fewer of them there is no line through it.
 constexpr double kCoreLeast = 0.5;
-/// Of height and weight: squares and cubes of them occur.
+/// Least and most height and weight: squares and cubes of them occur.
 constexpr double kLeast = 1e-50, kMost = 1e50;
 /// A heap with more is elastic all over.
 constexpr double kMostCohesion = 1e6;

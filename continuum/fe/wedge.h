@@ -69,13 +69,14 @@ struct WedgeResult {
   std::vector<fe::PointState> points;  ///< three per triangle
   std::vector<fe::LoadStep> steps;     ///< with each step's Newton history
   double weight = 0;                   ///< of the heap
-  /// Of each triangle: 2-norm over its area of the stress minus the recovered, continuous one
+  /// Each triangle's 2-norm over its area of the stress minus the recovered, continuous one
   /// (Zienkiewicz and Zhu 1987); and all of them over the 2-norm of the stress.
   std::vector<double> errors;
   double relative_error = 0;
-  /// Of each triangle of the lattice: those it was cut into.
+  /// Those that each triangle of the lattice was cut into.
   std::vector<std::vector<int>> pieces;
-  /// Of the ground on the heap; of a cone the radial forces are summed without regard to direction.
+  /// Force of the ground on the heap; a cone's radial forces are summed without regard to
+  /// direction.
   Eigen::Vector2d base_force = Eigen::Vector2d::Zero();
   int unknowns = 0;
 
@@ -94,7 +95,7 @@ struct WedgeResult {
 /// heap may yield again (Cantelaube's branches with a yield line there).
 struct WedgeCore {
   std::vector<double> depth, left, right;  ///< boundary's x <= 0 and >= 0; nan: all at the limit
-  /// Of the depths and sides that have a boundary; a cone has the right side alone.
+  /// Share of the depths and sides that have a boundary; a cone has the right side alone.
   double share = 0;
   double axis_mobilized = 0;  ///< mobilized friction on the axis, mean over the depths
   /// Angle from the vertical, in degrees, of the line from the apex that has half of the boundary
@@ -107,17 +108,13 @@ struct WedgeCore {
 /// Throws BadParameter naming the value found and what is allowed.
 void check_wedge(const WedgeProblem& problem);
 
-/// "fe_mohr_coulomb_wedge" and "fe_cone" of the registry, from complete settings (fe_models.cc
-/// declares them).
-std::unique_ptr<Model> make_wedge_model(const Settings& settings);
-std::unique_ptr<Model> make_cone_model(const Settings& settings);
-/// What both have. Throws as check_wedge.
+/// What the models fe_mohr_coulomb_wedge and fe_cone have in common: the problem of complete
+/// settings. Throws as check_wedge.
 WedgeProblem heap_problem(const Settings& settings, bool cone);
 /// Figures of the solution that both have.
 std::map<std::string, double> heap_figures(const WedgeResult& result, const WedgeCore& core);
 
-/// Of a triangle: the share of its points that yielded last, and the means of their plastic
-/// strains.
+/// Share of a triangle's points that yielded last, and means of their plastic strains.
 struct CellMeans {
   double plastic = 0, shear = 0, volume = 0;
 };

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "continuum/elastic_field.h"
+#include "continuum/fe/plugin.h"
 #include "continuum/fe/wedge.h"
 #include "continuum/settings.h"
 
@@ -177,10 +178,7 @@ class WedgeModel : public Model {
   std::unique_ptr<WedgeResult> solved_;
 };
 
+const fe::ModelRow wedge_row{"fe_mohr_coulomb_wedge", fe::made<WedgeModel>};
+
 }  // namespace
-
-std::unique_ptr<Model> make_wedge_model(const Settings& settings) {
-  return std::make_unique<WedgeModel>(settings);
-}
-
 }  // namespace grainfield::continuum

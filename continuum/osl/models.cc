@@ -13,6 +13,7 @@
 #include "continuum/osl/field_map.h"
 #include "continuum/osl/flux.h"
 #include "continuum/settings.h"
+#include "continuum/without_effect.h"
 
 namespace grainfield::continuum {
 namespace osl {
@@ -24,7 +25,7 @@ constexpr char layer_name[] = "fe_osl_layer";
 constexpr double kOnSlope = 1e-9;
 /// Width of the load and room beyond the farthest characteristic where none are chosen, in depths.
 constexpr double kLoadWidth = 0.1, kRoom = 0.1;
-/// Of columns of at most half the load's width on either side.
+/// Columns of at most half the load's width, on either side.
 constexpr double kMostColumns = 1e6;
 /// A million unknowns take 190 MB and a second of CPU time.
 constexpr double kMostUnknowns = 1e7;
@@ -189,11 +190,19 @@ class MarchModel : public Model {
   std::map<std::string, double> figures_;
 };
 
-template <const char* name>
-std::unique_ptr<Model> make(const Settings& settings) {
-  if (settings.at("solver") == "march")
-    return std::make_unique<MarchModel>(make_task(name, settings));
-  return make_in_fe_library(name, settings);
+MakeModel made(const std::string& name) {
+  return [name, by_elements = in_fe_library(name)](const Settings& s) -> std::unique_ptr<Model> {
+    if (s.at("solver") == "dg") return by_elements(s);
+    return std::make_unique<MarchModel>(make_task(name, s));
+  };
+}
+
+/// Nothing beyond what make_task() refuses.
+std::function<FirstMesh(const Settings&)> checked(const std::string& name) {
+  return [name](const Settings& s) {
+    make_task(name, s);
+    return FirstMesh();
+  };
 }
 
 std::vector<Parameter> with_numerics(std::vector<Parameter> all, int order, int columns, int rows,
@@ -204,13 +213,18 @@ std::vector<Parameter> with_numerics(std::vector<Parameter> all, int order, int 
                   "dg: discontinuous Galerkin finite elements; march: finite volumes marched down "
                   "by Runge-Kutta (ARKode)",
                   "numerics", {"dg", "march"}),
-           whole_number("order", "dg: polynomial degree; the error falls like size^(order + 1)",
-                        "numerics", order, 0, 8),
+           only_with(
+               whole_number("order", "dg: polynomial degree; the error falls like size^(order + 1)",
+                            "numerics", order, 0, 8),
+               "solver", {"dg"}),
            whole_number("columns", columns_meaning, "numerics", columns, 1, 100000),
-           whole_number("rows", "dg: cells over the depth", "numerics", rows, 1, 100000),
-           number("tolerance", "-", "march: relative error of the integration over depth",
-                  "numerics", 1e-9, 1e-14, 0.1),
-           whole_number("steps", "march: most steps", "numerics", 1000000, 1, 1000000000),
+           only_with(whole_number("rows", "dg: cells over the depth", "numerics", rows, 1, 100000),
+                     "solver", {"dg"}),
+           only_with(number("tolerance", "-", "march: relative error of the integration over depth",
+                            "numerics", 1e-9, 1e-14, 0.1),
+                     "solver", {"march"}),
+           only_with(whole_number("steps", "march: most steps", "numerics", 1000000, 1, 1000000000),
+                     "solver", {"march"}),
            text("map",
                 "CSV file of fields on a regular grid, columns x,y and one or more of "
                 "rho_g,eta,mu, which then replace these parameters" +
@@ -259,9 +273,14 @@ std::vector<Figure> osl_figures() {
           {"solve_s", "s", "wall time of solving"}};
 }
 
-}  // namespace
+std::string without_effect(const std::string& parameter, const Settings& s) {
+  if (parameter != "rho_g" && parameter != "eta" && parameter != "mu") return {};
+  const auto columns = osl::map_columns(s.at("map"));
+  const bool given = std::find(columns.begin(), columns.end(), parameter) != columns.end();
+  return given ? replaced_by("map", s) : std::string();
+}
 
-ModelInfo fe_osl_wedge_info() {
+ModelInfo wedge() {
   return {
       osl::wedge_name,
       "heap with oriented stress linearity as a field problem: finite elements or marching",
@@ -280,11 +299,13 @@ ModelInfo fe_osl_wedge_info() {
           2, 16, 16, "columns on either side of the axis",
           "; of eta and mu the one that is left open is as the yielding slope asks for with the "
           "map's other one"),
-      osl::make<osl::wedge_name>,
-      osl_figures()};
+      osl::made(osl::wedge_name),
+      osl_figures(),
+      without_effect,
+      osl::checked(osl::wedge_name)};
 }
 
-ModelInfo fe_osl_layer_info() {
+ModelInfo layer() {
   return {
       osl::layer_name,
       "layer with oriented stress linearity as a field problem: finite elements or marching",
@@ -309,11 +330,18 @@ ModelInfo fe_osl_layer_info() {
            choice("sides",
                   "far: the layer goes on; walls: rigid walls with wall_friction, which reflect",
                   "hyperbolic layer", {"far", "walls"}),
-           number("wall_friction", "-", "|sigma_xy| / sigma_xx at walls, down; 0: smooth",
-                  "Janssen", 0, 0, 100)},
+           only_with(number("wall_friction", "-", "|sigma_xy| / sigma_xx at walls, down; 0: smooth",
+                            "Janssen", 0, 0, 100),
+                     "sides", {"walls"})},
           3, 40, 40, "columns over a length of one depth", ""),
-      osl::make<osl::layer_name>,
-      osl_figures()};
+      osl::made(osl::layer_name),
+      osl_figures(),
+      without_effect,
+      osl::checked(osl::layer_name)};
 }
+
+}  // namespace
+
+std::vector<ModelInfo> osl_models() { return {wedge(), layer()}; }
 
 }  // namespace grainfield::continuum

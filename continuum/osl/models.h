@@ -6,10 +6,8 @@
 
 namespace grainfield::continuum {
 
-/// A heap under its weight.
-ModelInfo fe_osl_wedge_info();
-/// A layer under its weight and a load spread over a stated width.
-ModelInfo fe_osl_layer_info();
+/// A heap under its weight, and a layer under its weight and a load spread over a stated width.
+std::vector<ModelInfo> osl_models();
 
 namespace osl {
 

@@ -65,7 +65,7 @@ class MohrCoulombLaw {
     Eigen::Matrix3d tangent;
     Regime regime;
   };
-  /// Of principal trial stresses in descending order.
+  /// Returns principal trial stresses, in descending order.
   Principal principal_return(const Eigen::Vector3d& trial) const;
   double shear_modulus() const { return shear_; }
 

@@ -21,7 +21,8 @@ namespace grainfield::coupling {
 continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& facts) {
   continuum::Settings out = choice.settings;
   bool friction_filled = false;
-  for (const auto& parameter : continuum::find_model(choice.name).parameters) {
+  const continuum::ModelInfo& info = continuum::find_model(choice.name);
+  for (const auto& parameter : info.parameters) {
     if (parameter.name == "F") out.emplace("F", fmt::format("{}", facts.force));
     if (parameter.name == "h") out.emplace("h", fmt::format("{}", facts.height));
     if (parameter.name == "depth") out.emplace("depth", fmt::format("{}", facts.depth));
@@ -34,9 +35,7 @@ continuum::Settings filled_settings(const ModelChoice& choice, const RunFacts& f
     const auto number = facts.numbers.find(parameter.name);
     if (number == facts.numbers.end() || out.count(parameter.name) != 0) continue;
     // What the case sets may leave it without effect, as a map does r and t.
-    if (!continuum::without_effect_because(
-             choice.name, parameter.name,
-             continuum::complete(continuum::find_model(choice.name), out))
+    if (!continuum::without_effect_because(info, parameter.name, continuum::complete(info, out))
              .empty())
       continue;
     if (std::isnan(number->second)) {

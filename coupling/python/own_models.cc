@@ -68,9 +68,10 @@ void add_own_model(const std::string& name, const std::string& summary, int dim,
   for (const py::dict& parameter : parameters) info.parameters.push_back(parameter_of(parameter));
   const auto held = kept(stress);
   const Released alone(true);  // no fit or comparison goes on
-  continuum::add_own_model(std::move(info), [held](const continuum::Settings& settings) {
+  info.make = [held](const continuum::Settings& settings) {
     return std::make_unique<OwnModel>(held, settings);
-  });
+  };
+  continuum::add_own_model(std::move(info));
 }
 
 }  // namespace

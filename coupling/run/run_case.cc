@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "continuum/fe/elastic.h"
+#include "continuum/fe_models.h"
 #include "continuum/model.h"
 #include "coupling/base/signals.h"
 #include "coupling/base/version.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "continuum/fe/elastic.h"
+#include "continuum/fe_models.h"
 #include "continuum/model.h"
 
 using namespace grainfield::continuum;
