@@ -8,9 +8,11 @@
 #include <filesystem>
 #include <numbers>
 
+#include "coupling/elastic_constants/probed.h"
 #include "coupling/studies/sample/simulation/probe.h"
 #include "coupling/studies/sample/simulation/sample.h"
 #include "coupling/studies/sample/simulation/state.h"
+#include "tests/paths.h"
 
 namespace grainfield::dem {
 namespace {
@@ -312,6 +314,27 @@ TEST(ProbeRecord, ComesBack) {
   EXPECT_TRUE(state.tables.empty());
   EXPECT_EQ(probes_of(state, "first").lacking, none.lacking);
   EXPECT_TRUE(probes_of(state, "first").probes.empty());
+}
+
+// A file that version 0.9.0 wrote, with the numbers as text in attributes: thirty spheres in a
+// cell. The moduli are those of its summary.
+TEST(ProbeRecord, OfAFileOfVersion090HasItsNumbers) {
+  const std::string file =
+      std::string(GRAINFIELD_SOURCES) + "/tests/coupling/simulations/probes_0_9_0.h5";
+  const Snapshot state = read_snapshot(file, "/realization_000/state_000");
+  ASSERT_TRUE(state.tables.empty());
+  const StateProbes old = probes_of(state, "first");
+  const auto known = [](const StateProbes& probes) {
+    EXPECT_EQ(probes.probes.size(), 6U);
+    const coupling::ProbedPacking packing = coupling::probed_packing(probes);
+    EXPECT_NEAR(packing.moduli.young / 14100102.15067388, 1, 1e-9);
+    EXPECT_NEAR(packing.moduli.g_vh / 5067839.818800869, 1, 1e-9);
+    EXPECT_NEAR(packing.nonlinear / 0.008515313859257346, 1, 1e-6);
+  };
+  known(old);
+  Snapshot fresh;
+  put_probes(old, fresh);
+  known(probes_of(fresh, "first"));
 }
 
 TEST(ProbeRecord, IsRefusedWhereItIsBroken) {
