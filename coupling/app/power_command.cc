@@ -88,8 +88,8 @@ void add_power(CLI::App& app, Action& action) {
       if (table.rows.empty()) {
         throw std::invalid_argument("--model: found one model, allowed: two or more");
       }
-      say("To distinguish these models from {} at 95 % with a power of 80 %:\n\n{}\n",
-          judgement.best_model().label, markdown_table(table.header, table.rows));
+      say("To distinguish these models from {} at 95 % with a power of 80 %:\n\n{}\n{}\n\n",
+          judgement.best_model().label, markdown_table(table.header, table.rows), table.note);
       say("{}\nreport: {}/report.html\n", sentence(judgement), printable_name(wanted.folder));
       return 0;
     };

@@ -2,6 +2,7 @@
 // stands in a folder of its own (coupling/studies) and is known here by its name alone.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -87,7 +88,7 @@ struct Study {
   /// Words of keys that other studies give other words.
   std::vector<OwnWords> words;
   /// Lists of the figures that it leaves besides those of every run, shared ones too.
-  std::vector<std::vector<SummaryKey> (*)()> figures;
+  std::vector<std::function<std::vector<SummaryKey>()>> figures;
   /// Parameters of models that the run fills in where the user does not set them.
   std::vector<std::string> fills;
   /// Whether compare.models may be empty.
@@ -123,8 +124,8 @@ struct Study {
   void (*check)(const Case&) = nullptr;
   /// Everything the study leaves, from the files of its realizations in order (none without
   /// grains). The bits do not depend on threads.
-  StudyResult (*analyse)(const Case&, const std::vector<std::string>& realizations,
-                         int threads) = nullptr;
+  std::function<StudyResult(const Case&, const std::vector<std::string>& realizations, int threads)>
+      analyse;
 
   bool has_grains() const { return make_run != nullptr; }
 };

@@ -1,11 +1,11 @@
-#include "coupling/elastic_constants/isotropic.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "continuum/constants.h"
+#include "coupling/elastic_constants/constants.h"
+#include "coupling/elastic_constants/samples.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -13,11 +13,41 @@ namespace {
 // Squared strain of one kind below this share of the whole is rounding (1e-9 in amplitude).
 constexpr double least_share = 1e-18;
 
+// Sums from which K and G follow; they add up over samples and realizations.
+// Normal equation of y = 2 e k: y and e are the traces (k is K) or the deviators (k is G).
+struct StiffnessSums {
+  double strain = 0;  // 4 sum of w e^2
+  double right = 0;   // 2 sum of w e y
+  double stress = 0;  // sum of w y^2
+
+  void add(const StiffnessSums& other) {
+    strain += other.strain;
+    right += other.right;
+    stress += other.stress;
+  }
+  // k; nan without strain.
+  double stiffness() const;
+  // Share of the stress that the fit explains.
+  double share() const;
+};
+
+struct IsotropicSums {
+  StiffnessSums trace, deviator;
+
+  void add(const Sample& sample);
+  void add(const IsotropicSums& other) {
+    trace.add(other.trace);
+    deviator.add(other.deviator);
+  }
+  bool has_volume_change() const;  // of the strain, above rounding
+  bool has_shear() const;
+  // K, G, E, nu; nan where undefined.
+  Eigen::Vector4d constants() const;
+};
+
 // Strain (rows 0..1) or stress as pairs that enter the deviator: normal difference and twice the
 // shear; the sum of their squares is (xx - yy)^2 + 4 xy^2.
 Eigen::Vector2d deviator_of(const Eigen::Vector3d& t) { return {t[0] - t[1], 2 * t[2]}; }
-
-}  // namespace
 
 double StiffnessSums::stiffness() const { return strain > 0 ? right / strain : kNan; }
 
@@ -51,8 +81,6 @@ Eigen::Vector4d IsotropicSums::constants() const {
                g = has_shear() ? deviator.stiffness() : kNan;
   return {k, g, 3 * g - g * g / k, (1 - g / k) / 2};
 }
-
-namespace {
 
 std::string note_of(const IsotropicSums& all, const Eigen::Vector4d& c, int samples) {
   if (samples == 0) return "no point with both stress and strain: no constants";

@@ -29,7 +29,7 @@ ProbedPacking probed_packing(const dem::StateProbes& probes) {
     }
   }
   out.moduli = space_moduli(out.increments);
-  out.odd = std::sqrt(sum / difference);
+  out.nonlinear = std::sqrt(sum / difference);
   out.asymmetry =
       (stiffness - stiffness.transpose()).cwiseAbs().maxCoeff() / (stiffness.trace() / 3);
   return out;

@@ -12,9 +12,9 @@ struct ProbedPacking {
   SpaceIncrements increments;
   SpaceModuli moduli;
   double gained = 0, lost = 0, sliding = 0;  ///< largest share of the contacts in any probe
-  /// Root of sum |forth + back|^2 over sum |forth - back|^2 of the stress changes: what is not
-  /// linear. 0 of a linear law.
-  double odd = 0;
+  /// Root of sum |forth + back|^2 over sum |forth - back|^2 of the stress changes: their part that
+  /// is even in the strain over the odd one, 0 for a linear law.
+  double nonlinear = 0;
   /// Largest |C_ab - C_ba| of the axes over the mean of C_aa, where each axis is strained alone: 0
   /// where the stress has a potential.
   double asymmetry = 0;

@@ -77,7 +77,9 @@ std::vector<SummaryKey> figures_of_fits() {
        "it "
        "counts"},
       {"fit.*.distinguishable", "text",
-       "from the nearest model: yes: behind it by more than chance; no; unknown: no errors"},
+       "from the nearest model: yes: behind it by more than chance; no; reference: it is the "
+       "nearest; "
+       "unknown: no errors"},
       {"fit.*.agrees", "text", "yes: chi2_per_dof is within chi2_chance; no; unknown: no errors"},
       {"fit.*.supported", "text",
        "yes: it agrees and is not distinguishable from the nearest; no; unknown: no errors"},

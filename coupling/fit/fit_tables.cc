@@ -130,7 +130,7 @@ void add_ranking(Summary& summary, const Judgement& judgement) {
     summary[prefix + "heights_behind"] = m.heights_behind;
     summary[prefix + "heights_behind_error"] = m.heights_error;
     if (std::isfinite(m.aic_behind)) summary[prefix + "aic_behind"] = m.aic_behind;
-    summary[prefix + "distinguishable"] = std::string(text_of(m.distinguishable));
+    summary[prefix + "distinguishable"] = std::string(m.distinguishable_text());
     summary[prefix + "agrees"] = std::string(text_of(m.agrees()));
     summary[prefix + "supported"] = std::string(text_of(m.supported()));
   }

@@ -57,13 +57,16 @@ Difference paired(const Evidence& e, const Eigen::MatrixXd& one, const Eigen::Ma
 Power foreseen(const Evidence& e, const Difference& behind, double signal, double distance,
                bool given) {
   Power out;
-  out.same = std::fabs(behind.mean) < kSame * signal || distance < kSame * signal;
-  if (out.same) {
+  if (std::fabs(behind.mean) < kSame * signal || distance < kSame * signal) {
+    out.same = true;
     out.realizations = out.least = out.most = kInfinity;
-    return out;
+  } else {
+    out = power_of(PairedDifference{behind.mean, behind.error, given ? distance : kInfinity,
+                                    e.realizations, e.errors_from == ErrorsFrom::data});
   }
-  return power_of(PairedDifference{behind.mean, behind.error, given ? distance : kInfinity,
-                                   e.realizations, e.errors_from == ErrorsFrom::data});
+  out.difference = behind.mean / signal;
+  out.error = behind.error / signal;
+  return out;
 }
 
 const std::string& family_of(const JudgedModel& m) { return m.family.empty() ? m.name : m.family; }
@@ -109,6 +112,10 @@ const char* text_of(Answer answer) {
 Answer JudgedModel::agrees() const {
   if (std::isnan(misfit) || std::isnan(chance)) return Answer::unknown;
   return misfit <= chance ? Answer::yes : Answer::no;
+}
+
+const char* JudgedModel::distinguishable_text() const {
+  return nearest && distinguishable != Answer::unknown ? "reference" : text_of(distinguishable);
 }
 
 Answer JudgedModel::supported() const {
@@ -214,6 +221,7 @@ Judgement judge(const Evidence& e, std::vector<Candidate> candidates) {
     apart.push_back(any_free ? kInfinity
                              : squared_distance(c.forecast, nearest.forecast, e.samples.cols()) /
                                    signal);
+    m.nearest = &c == &nearest;
     out.models.push_back(std::move(m));
   }
   if (judged) {

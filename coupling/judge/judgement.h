@@ -34,6 +34,8 @@ inline constexpr double kForesight = 0.8;
 struct Power {
   double realizations = kNan, least = kNan, most = kNan;  ///< infinite: none is foreseen
   bool same = false;  ///< no number would: the two are one stress here
+  /// What it follows from: score less that of the best model, and its standard error.
+  double difference = kNan, error = kNan;
 };
 
 /// Differences are shares of the mean's own sum of squares, |model - grains|^2 / |grains|^2, in
@@ -61,11 +63,14 @@ struct JudgedModel {
   /// For a single field with errors: Akaike's difference to the nearest, where numbers are free.
   double aic_behind = kNan;
 
-  Answer distinguishable = Answer::unknown;  ///< from the nearest
+  bool nearest = false;                      ///< the one that the others are compared with
+  Answer distinguishable = Answer::unknown;  ///< from the nearest; no for itself
   Power power;                               ///< against the best model; nan for itself
 
   Answer agrees() const;
   Answer supported() const;
+  /// "yes", "no", "unknown", or "reference": it is the nearest, and there are errors.
+  const char* distinguishable_text() const;
 };
 
 /// Where the data are between the best models of two families.

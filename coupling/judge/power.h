@@ -24,7 +24,7 @@ struct PairedDifference {
   bool error_is_known = false;  ///< of a single field with errors: it is not that of a spread
 };
 
-/// All of Power but `same`. All nan where the error is.
+/// The numbers of realizations; all nan where the error is.
 Power power_of(const PairedDifference& difference);
 
 /// Realizations after which a paired difference of this mean and standard deviation is beyond

@@ -216,6 +216,17 @@ std::string range_of(const Power& p) {
   return fmt::format("{:.0f} to {:.0f}", std::ceil(p.least), std::ceil(p.most));
 }
 
+std::string difference_of(const Power& p) { return with_error(1e3 * p.difference, 1e3 * p.error); }
+
+// Why no number is the largest.
+std::string no_limit(const Judgement& j, const JudgedModel& rival) {
+  Power p = rival.power;
+  const bool ahead = p.difference < 0;
+  p.difference = std::fabs(p.difference);
+  return fmt::format("There is no upper limit, because {} is behind {} by {}, which may be 0.",
+                     ahead ? j.best : rival.name, ahead ? rival.name : j.best, difference_of(p));
+}
+
 std::string power_line(const Judgement& j) {
   const JudgedModel* rival = j.find(j.rival);
   if (rival == nullptr || std::isnan(rival->power.realizations)) return "";
@@ -233,12 +244,11 @@ std::string power_line(const Judgement& j) {
                        j.best, j.rival, subject(j), many(j));
   }
   if (std::isinf(p.realizations)) {
-    return fmt::format(
-        "{} {} {}: their difference here is within chance, which sets no upper limit.", what,
-        range_of(p), many(j));
+    return fmt::format("{} {} {}. {}", what, range_of(p), many(j), no_limit(j, *rival));
   }
-  return fmt::format("{} about {:.0f} {} ({} in {:.0f} of 100 ensembles).", what,
-                     std::ceil(p.realizations), many(j), range_of(p), 100 * kForesight);
+  return fmt::format("{} about {:.0f} {} ({} in {:.0f} of 100 ensembles).{}{}", what,
+                     std::ceil(p.realizations), many(j), range_of(p), 100 * kForesight,
+                     std::isinf(p.most) ? " " : "", std::isinf(p.most) ? no_limit(j, *rival) : "");
 }
 
 // What the judgement says at other kernel widths: a line for each kind of answer.
@@ -268,6 +278,12 @@ std::vector<std::string> width_lines(const Judgement& j) {
   return out;
 }
 
+// "the description cantelaube", "2 descriptions".
+std::string described(const std::vector<std::string>& names) {
+  return names.size() == 1 ? "the description " + names.front()
+                           : fmt::format("{} descriptions", names.size());
+}
+
 std::string equations_line(const Judgement& j) {
   if (j.equations.empty()) return "";
   if (j.equations == "not distinguishable") {
@@ -277,8 +293,6 @@ std::string equations_line(const Judgement& j) {
 }
 
 }  // namespace
-
-namespace {}  // namespace
 
 std::string as_sentence(std::string text) {
   const std::string first = text.substr(0, text.find(' '));
@@ -308,28 +322,39 @@ std::string agreement_line(const Judgement& j) {
                              capital(counted(j.realizations, j.noun)))
                : std::string("Without errors it is unknown whether a model agrees.");
   }
+  // A description does not compete, and is counted apart.
+  std::vector<std::string> descriptions;
+  long agreeing = 0;
+  for (const JudgedModel& m : j.models) {
+    if (m.agrees() != Answer::yes) continue;
+    if (m.description) {
+      descriptions.push_back(m.label);
+    } else {
+      ++agreeing;
+    }
+  }
   const std::string level =
       fmt::format("a true model exceeds {} in 1 of 100 ensembles", digits(best.chance));
   if (best.agrees() == Answer::yes) {
     const auto supported = std::count_if(j.models.begin(), j.models.end(), [](const auto& m) {
       return m.supported() == Answer::yes;
     });
-    const auto agreeing = std::count_if(j.models.begin(), j.models.end(), [](const auto& m) {
-      return m.agrees() == Answer::yes && !m.description;
-    });
     const std::string own = fmt::format("misfit {}, and {}", digits(best.misfit), level);
-    if (agreeing == 1) return fmt::format("{} agrees within the errors: {}.", best.label, own);
+    if (agreeing + static_cast<long>(descriptions.size()) == 1) {
+      return fmt::format("{}{} agrees within the errors: {}.",
+                         best.description ? "The description " : "", best.label, own);
+    }
+    std::string who = agreeing == 1 ? best.label : fmt::format("{} of the models", agreeing);
+    if (!descriptions.empty()) who += " and " + described(descriptions);
     return fmt::format(
-        "{} of the models agree within the errors{}: {} has {}.", agreeing,
-        agreeing == supported ? "" : fmt::format(", {} of them supported", supported), best.label,
-        own);
+        "{} agree within the errors{}: {} has {}.", who,
+        agreeing == supported ? "" : fmt::format(", {} of the models supported", supported),
+        best.label, own);
   }
-  const bool none = std::none_of(j.models.begin(), j.models.end(), [](const JudgedModel& m) {
-    return m.agrees() == Answer::yes && !m.description;
-  });
-  if (none) {
-    return fmt::format("No model agrees within the errors: the misfit of {} is {}, and {}.",
-                       best.label, digits(best.misfit), level);
+  if (agreeing == 0) {
+    return fmt::format("No model agrees within the errors{}: the misfit of {} is {}, and {}.",
+                       descriptions.empty() ? "" : ", only " + described(descriptions), best.label,
+                       digits(best.misfit), level);
   }
   return fmt::format("{} does not agree within the errors: its misfit is {}, and {}.", best.label,
                      digits(best.misfit), level);
@@ -353,8 +378,12 @@ std::vector<std::string> note_lines(const Judgement& j) {
 
 JudgementTable power_table(const Judgement& j) {
   JudgementTable out;
-  out.header = {"model", many(j) + " needed",
+  out.header = {"model", "difference", many(j) + " needed",
                 fmt::format("in {:.0f} of 100 ensembles", 100 * kForesight), "distinguishable now"};
+  out.note = fmt::format(
+      "Difference: how much worse than {} the model predicts unseen realizations, in thousandths "
+      "of the squared signal. If it may be 0 within its error, there is no upper limit.",
+      j.best_model().label);
   for (const JudgedModel& m : j.models) {
     if (m.name == j.best) continue;
     const Power& p = m.power;
@@ -365,7 +394,8 @@ JudgementTable power_table(const Judgement& j) {
                                    ? "no upper limit"
                                    : fmt::format("{:.0f}", std::ceil(p.realizations));
     const bool shown = !p.same && std::isfinite(p.least);
-    out.rows.push_back({m.label, number, shown ? range_of(p) : "-", text_of(m.distinguishable)});
+    out.rows.push_back(
+        {m.label, difference_of(p), number, shown ? range_of(p) : "-", text_of(m.distinguishable)});
   }
   return out;
 }
@@ -379,59 +409,65 @@ JudgementTable table_of(const Judgement& j) {
     bool shown;
     std::function<std::string(const JudgedModel&)> cell;
   };
+  // The meanings are those of docs/glossary.md, word by word.
   const std::vector<Column> columns{
       {"model", "", true, [](const auto& m) { return m.label; }},
       {"equations", "", any([](const auto& m) { return !m.equations.empty(); }),
        [](const auto& m) { return m.equations; }},
-      {"free", "Free: numbers that were fitted.", any([](const auto& m) { return m.free > 0; }),
+      {"free", "number of fitted constants", any([](const auto& m) { return m.free > 0; }),
        [](const auto& m) { return fmt::format("{}", m.free); }},
-      {"misfit", "Misfit: squared difference over what the errors make of a true model's.",
+      {"misfit",
+       "squared difference from the model, divided by the value expected for a true model",
        any([](const auto& m) { return std::isfinite(m.misfit); }),
        [](const auto& m) { return digits(m.misfit); }},
-      {"chance", "Chance: a true model's misfit exceeds it in 1 of 100 ensembles.",
+      {"chance", "threshold that a true model's misfit exceeds in 1 of 100 ensembles",
        any([](const auto& m) { return std::isfinite(m.chance); }),
        [](const auto& m) { return digits(m.chance); }},
-      {"relative L2", "Relative L2: root of the squared difference over the signal's square.", true,
-       [](const auto& m) { return std::isfinite(m.rel_l2) ? percent(m.rel_l2) : "-"; }},
+      {"relative L2", "root of the squared difference, divided by the root of the squared signal",
+       true, [](const auto& m) { return std::isfinite(m.rel_l2) ? percent(m.rel_l2) : "-"; }},
       {"behind",
-       "Behind: squared difference from realizations left out, less the nearest model's, in parts "
-       "per thousand of the signal's square.",
+       "how much worse than the nearest the model predicts unseen realizations, in thousandths of "
+       "the squared signal",
        any([](const auto& m) { return std::isfinite(m.behind_error); }),
        [](const auto& m) {
-         return m.behind == 0 && m.behind_error == 0
-                    ? std::string("nearest")
-                    : with_error(1e3 * m.behind, 1e3 * m.behind_error);
+         return m.nearest ? std::string("nearest")
+                          : with_error(1e3 * m.behind, 1e3 * m.behind_error);
        }},
-      {"behind, heights", "Heights: the same on heights left out.",
+      {"behind, heights", "the same for unseen heights",
        any([](const auto& m) { return std::isfinite(m.heights_behind); }),
        [](const auto& m) {
-         return m.behind == 0 && m.behind_error == 0
-                    ? std::string("nearest")
-                    : with_error(1e3 * m.heights_behind, 1e3 * m.heights_error);
+         return m.nearest ? std::string("nearest")
+                          : with_error(1e3 * m.heights_behind, 1e3 * m.heights_error);
        }},
-      {"distinguishable", "Distinguishable: behind the nearest by more than chance.",
+      {"distinguishable",
+       "the model predicts worse than the nearest, by more than the errors explain (95 %)",
        any([](const auto& m) { return m.distinguishable != Answer::unknown; }),
-       [](const auto& m) { return text_of(m.distinguishable); }},
+       [](const auto& m) { return m.nearest ? "-" : text_of(m.distinguishable); }},
       {"behind, Akaike",
-       "Akaike: chi2 of the fit plus twice its free numbers, less the nearest model's; above 10 "
-       "the "
-       "model is behind.",
+       "chi2 plus twice the number of fitted constants, less that of the nearest; above 10 the "
+       "model is behind",
        any([](const auto& m) { return std::isfinite(m.aic_behind); }),
        [](const auto& m) {
          return std::isfinite(m.aic_behind) ? fmt::format("{:.1f}", m.aic_behind) : "-";
        }},
-      {"agrees", "Agrees: the misfit is within chance.",
+      {"agrees", "the misfit is below chance",
        any([](const auto& m) { return m.agrees() != Answer::unknown; }),
        [](const auto& m) { return text_of(m.agrees()); }},
-      {"supported", "Supported: agrees, and cannot be distinguished from the nearest.", true,
+      {"supported", "the model agrees, and cannot be distinguished from the nearest", true,
        [](const auto& m) {
          return m.description ? "no: a description" : std::string(text_of(m.supported()));
        }}};
   for (const Column& c : columns) {
     if (!c.shown) continue;
     out.header.push_back(c.head);
-    out.meanings.push_back(c.meaning);
-    if (!c.meaning.empty()) out.note += (out.note.empty() ? "" : " ") + c.meaning;
+    std::string& meaning = out.meanings.emplace_back(c.meaning);
+    if (meaning.empty()) continue;
+    meaning = fmt::format("{}: {}.", c.head, c.meaning);
+    meaning[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning[0])));
+    out.note += (out.note.empty() ? "" : " ") + meaning;
+  }
+  if (any([](const auto& m) { return m.description; })) {
+    out.note += " Description: the model need not be in equilibrium, and is never supported.";
   }
   for (const JudgedModel& m : j.models) {
     auto& row = out.rows.emplace_back();

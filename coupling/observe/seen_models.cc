@@ -97,6 +97,19 @@ ObservedLine observed_line(const Field& field, const LineOf& line,
   return out;
 }
 
+ObservedLine pressure_line(const std::string& name, double depth, const Eigen::VectorXd& x,
+                           const Eigen::MatrixXd& samples) {
+  ObservedLine out;
+  out.profile.name = out.profile.key = name;
+  out.profile.depth = depth;
+  out.profile.x = x;
+  out.profile.samples = samples;
+  out.profile.mean = samples.rowwise().mean();
+  out.places.points.resize(x.size(), 2);
+  out.places.points << x, Eigen::VectorXd::Constant(x.size(), -depth);
+  return out;
+}
+
 std::vector<SeenModel> see_models(const Observations& observed,
                                   const std::vector<ModelChoice>& choices,
                                   const ModelEvaluator& evaluate,
@@ -165,10 +178,12 @@ void add_models(StudyResult& out, const Observations& observed,
   double seconds = 0;
   for (const SeenModel& model : models) {
     seconds += model.seconds;
-    Field field = model_field(model.choice, model.told, map.points, model.map, map.nx, map.ny);
-    field.nz = map.nz;
-    if (observed.apex != 0) field.attributes["apex_z"] = observed.apex;
-    out.fields.emplace_back("model_" + model.choice.label, std::move(field));
+    if (map.points.size() > 0) {
+      Field field = model_field(model.choice, model.told, map.points, model.map, map.nx, map.ny);
+      field.nz = map.nz;
+      if (observed.apex != 0) field.attributes["apex_z"] = observed.apex;
+      out.fields.emplace_back("model_" + model.choice.label, std::move(field));
+    }
     if (map.points.cols() == 2) {
       out.model_maps.push_back({model.profiles.label, model.map.col(1)});
     }

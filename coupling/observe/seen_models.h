@@ -23,6 +23,10 @@ struct LineOf {
 ObservedLine observed_line(const Field& field, const LineOf& line,
                            std::shared_ptr<const Kernel> kernel,
                            const std::vector<Eigen::Index>& at = {});
+/// Pressures at these x (m) and this depth below the models' origin, as they are: not averaged. A
+/// column for each realization.
+ObservedLine pressure_line(const std::string& name, double depth, const Eigen::VectorXd& x,
+                           const Eigen::MatrixXd& samples);
 
 /// evaluate_model, or another way to the same.
 using ModelEvaluator =

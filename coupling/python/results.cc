@@ -37,8 +37,7 @@ void add_judgement(py::module_& module) {
       .def_readonly("aic_behind", &JudgedModel::aic_behind)
       .def_property_readonly(
           "family", [](const JudgedModel& m) { return m.family.empty() ? m.name : m.family; })
-      .def_property_readonly("distinguishable",
-                             [](const JudgedModel& m) { return text_of(m.distinguishable); })
+      .def_property_readonly("distinguishable", &JudgedModel::distinguishable_text)
       .def_property_readonly("agrees", [](const JudgedModel& m) { return text_of(m.agrees()); })
       .def_property_readonly("supported",
                              [](const JudgedModel& m) { return text_of(m.supported()); })

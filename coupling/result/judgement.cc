@@ -32,7 +32,7 @@ nlohmann::json json_of(const JudgedModel& m) {
           {"heights_behind", number_or_null(m.heights_behind)},
           {"heights_error", number_or_null(m.heights_error)},
           {"aic_behind", number_or_null(m.aic_behind)},
-          {"distinguishable", text_of(m.distinguishable)},
+          {"distinguishable", m.distinguishable_text()},
           {"realizations_needed", number_or_null(m.power.realizations)},
           {"realizations_least", number_or_null(m.power.least)},
           {"realizations_most", number_or_null(m.power.most)},
@@ -46,7 +46,9 @@ std::string judgement_text(const Judgement& j) {
   std::string out = fmt::format("{}\n", fmt::join(headlines(j), "\n\n"));
   if (const std::string line = agreement_line(j); !line.empty()) out += "\n" + line + "\n";
   const JudgementTable table = table_of(j);
-  if (!table.rows.empty()) out += "\n" + markdown_table(table.header, table.rows);
+  if (!table.rows.empty()) {
+    out += fmt::format("\n{}\n{}\n", markdown_table(table.header, table.rows), table.note);
+  }
   for (const std::string& line : note_lines(j)) out += "\n" + line + "\n";
   if (!j.doubts.empty()) out += "\n";
   for (const std::string& line : j.doubts) out += "- " + line + "\n";
@@ -59,7 +61,10 @@ std::string judgement_latex(const Judgement& j) {
     out += fmt::format("\n{}\n", escape_latex(line));
   }
   const JudgementTable table = table_of(j);
-  if (!table.rows.empty()) out += fmt::format("\n{}", latex_table(table.header, table.rows));
+  if (!table.rows.empty()) {
+    out +=
+        fmt::format("\n{}\n{}\n", latex_table(table.header, table.rows), escape_latex(table.note));
+  }
   for (const std::string& line : note_lines(j)) out += fmt::format("\n{}\n", escape_latex(line));
   if (j.doubts.empty()) return out;
   out += "\n\\begin{itemize}\n";

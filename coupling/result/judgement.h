@@ -7,8 +7,8 @@
 
 namespace grainfield::coupling {
 
-/// Headline, agreement, table, notes and doubts, one paragraph each, as Markdown whose table is
-/// aligned: the terminal's text and verdict.md.
+/// Headline, agreement, table, its legend, notes and doubts, one paragraph each, as Markdown whose
+/// table is aligned: the terminal's text and verdict.md.
 std::string judgement_text(const Judgement& judgement);
 /// The same for LaTeX: verdict.tex.
 std::string judgement_latex(const Judgement& judgement);

@@ -190,7 +190,7 @@ std::vector<SummaryKey> declared_keys() {
     }
   };
   for (const Study& study : studies()) {
-    for (const auto figures : study.figures) add(figures());
+    for (const auto& figures : study.figures) add(figures());
   }
   add(model_figures());
   add(of_all);

@@ -2,6 +2,27 @@
 
 namespace grainfield::dem {
 
+void Archive::operator()(std::map<std::string, double>& numbers) {
+  std::vector<double> values;
+  std::string names;
+  for (const auto& [name, value] : numbers) {
+    names += name + "\n";
+    values.push_back(value);
+  }
+  (*this)(names);
+  (*this)(values);
+  if (!is_reading()) return;
+  numbers.clear();
+  std::size_t from = 0;
+  for (const double value : values) {
+    const std::size_t end = names.find('\n', from);
+    require(end != std::string::npos);
+    numbers[names.substr(from, end - from)] = value;
+    from = end + 1;
+  }
+  require(from == names.size());
+}
+
 void Archive::snapshot(std::optional<Snapshot>& snapshot, const std::string& name) {
   int there = snapshot.has_value() ? 1 : 0;
   (*this)(there);

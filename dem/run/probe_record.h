@@ -1,10 +1,11 @@
-// What small strains of a sample at rest have shown, and how a snapshot's attributes hold it.
+// What small strains of a sample at rest have shown, and how a snapshot holds it.
 #pragma once
 #include <Eigen/Core>
 #include <array>
-#include <map>
 #include <string>
 #include <vector>
+
+#include "dem/snapshot/snapshot.h"
 
 namespace grainfield::dem {
 
@@ -25,22 +26,26 @@ struct Probe {
 
 /// All of one state.
 struct StateProbes {
-  std::string state;                                 ///< "prepared" | "first"
+  std::string state;                                 ///< "prepared" | "first" | "layer"
   Eigen::Matrix3d stress = Eigen::Matrix3d::Zero();  ///< before them, Pa
   std::vector<Probe> probes;
   std::string lacking;  ///< why there are none, where it could not be probed
 };
 
-using Attributes = std::map<std::string, std::string>;
+/// Puts the outcome to its direction: forth for an even number of the probe, back for an odd one.
+void add_outcome(StateProbes& probes, const std::string& direction, int number,
+                 const ProbeOutcome& outcome);
 
-/// As attributes "probe.STATE.before" and "probe.STATE.DIRECTION.forth" and ".back": the numbers in
-/// the order of the members, matrices row by row. A state that could not be probed has
-/// "probe.STATE.lacking" instead, and nothing else.
-void put_probes(const StateProbes& probes, Attributes& attributes);
+/// Puts the probes into table "probes_STATE", a row for each direction and way: the axes of the
+/// strain (1 to 3), the way (1 forth, -1 back), the stress before, and the members of the outcome,
+/// matrices as nine columns. A state that could not be probed has attribute "probe.STATE.lacking"
+/// instead.
+void put_probes(const StateProbes& probes, Snapshot& snapshot);
 
-/// Those of a state, none where it has not been probed. Throws std::invalid_argument naming an
-/// attribute that cannot be read.
-StateProbes probes_of(const Attributes& attributes, const std::string& state);
+/// The probes of a state, none where it has not been probed. Files of version 0.9.0 may hold them
+/// in attributes "probe.STATE.before" and "probe.STATE.DIRECTION.forth" and ".back", the numbers as
+/// text. Throws std::invalid_argument naming the table or the attribute that cannot be read.
+StateProbes probes_of(const Snapshot& snapshot, const std::string& state);
 
 /// States that samples can be probed in, in the order of their path.
 const std::vector<std::string>& probed_states();

@@ -226,6 +226,7 @@ def test_a_judgement_is_an_object(file):
     first, second = here.models
     assert first.name == here.best == here["best_model"] == "osl" and first.supported == "yes"
     assert first.behind == 0 and second.behind > 0 and second.distinguishable == "yes"
+    assert first.distinguishable == here["models"][0]["distinguishable"] == "reference"
     assert here.realizations == 3 and here.headlines[0] in str(here) and here.headlines[0] in repr(here)
     for model, row in zip(here["models"], here.models):
         for name, value in model.items():
@@ -233,6 +234,8 @@ def test_a_judgement_is_an_object(file):
             assert value == there or value is None and not np.isfinite(there), name
     table = here.table
     assert len(table["model"]) == 2 and list(table.rows())[0]["model"] == first.label
+    assert table["distinguishable"].tolist() == ["-", "yes"] and "Chance: threshold" in table.notes[0]
+    assert table.notes[0] in str(here) and table.notes[0] in here._repr_html_().replace("&#x27;", "'")
     assert len(here.power) > 0 and list(here) == list(here.to_dict())
 
 

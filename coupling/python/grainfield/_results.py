@@ -56,7 +56,7 @@ class Judgement(MappingBase):
 
     models: nearest first, each with name, label, family, equations, free, misfit, chance, relative_l2,
     behind, behind_error, heights_behind, heights_error, distinguishable, agrees, supported ("yes",
-    "no", "unknown"), realizations_needed and so on; nan where nothing is known. best: the name of the
+    "no", "unknown"; distinguishable of the nearest: "reference"), realizations_needed and so on; nan where nothing is known. best: the name of the
     best; distinguishable; equations; position (value, standard error) between two families; rival;
     realizations; headlines, agreement, notes, doubts: its sentences; table, power: what it prints.
     str(judgement) is the terminal's text, judgement.latex() verdict.tex. As a mapping it is

@@ -115,7 +115,7 @@ def judgement(of: Any) -> str:
     out = "".join(paragraph(line, "h4") for line in of.headlines)
     out += "".join(paragraph(line) for line in ([of.agreement] if of.agreement else []))
     if shown.rows:
-        out += table(shown.header, shown.rows)
+        out += table(shown.header, shown.rows) + paragraph(shown.note)
     out += "".join(paragraph(line) for line in of.notes)
     if of.doubts:
         out += "<ul>" + "".join(paragraph(line, "li") for line in of.doubts) + "</ul>"

@@ -3,10 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "coupling/report/judgement.h"
+#include "coupling/observe/declaration.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/run/recorded.h"
-#include "coupling/run/study_result.h"
 #include "coupling/studies/hard_to_soft/keys.h"
 #include "coupling/studies/hard_to_soft/simulation.h"
 
@@ -32,41 +31,29 @@ std::string switch_sentence(const Summary& summary) {
       at("switch.lost_soft"), at("switch.switched"), at("switch.balance_error"));
 }
 
-Report switch_page(const StudyResult& result, const Realization* first,
-                   const std::vector<Chart>& charts) {
-  Report out;
+std::vector<Section> switch_pictures(const StudyResult& result, const Realization& first) {
+  std::vector<Section> out;
   const auto& setup = result.value.get<dem::HardToSoftSetup>();
-  out.title = title_of(result.value);
-  out.subtitle = fmt::format("{} disks, restitution {:g}, softness {:g}",
-                             setup.columns * setup.rows, setup.restitution, setup.softness);
-  add_verdict(out, result.comparison.judgement);
-  if (first != nullptr) {
-    for (const auto& [name, state] : first->snapshots) {
-      const std::string when = fmt::format("t = {:.3g} sqrt(d/g)", state.time / setup.time_unit());
-      out.sections.emplace_back(marked_grains("Soft grains, " + when, state,
-                                              soft_ones(state, result.realizations.front()),
-                                              "Blue: soft grains; pale: hard ones, which fly or "
-                                              "collide by impulses."));
-    }
-    if (const dem::Snapshot* pile = first->find("pile")) {
-      out.sections.emplace_back(packing("Network of forces", *pile));
-    }
+  for (const auto& [name, state] : first.snapshots) {
+    const std::string when = fmt::format("t = {:.3g} sqrt(d/g)", state.time / setup.time_unit());
+    out.emplace_back(marked_grains("Soft grains, " + when, state,
+                                   soft_ones(state, result.realizations.front()),
+                                   "Blue: soft grains; pale: hard ones, which fly or collide by "
+                                   "impulses."));
   }
-  for (const Chart& chart : charts) out.sections.emplace_back(chart.picture());
-  add_rows(out, "Figures", figure_rows(result));
-  add_rows(out, "How it was made", origin_rows(result));
+  if (const dem::Snapshot* pile = first.find("pile")) {
+    out.emplace_back(packing("Network of forces", *pile));
+  }
+  for (const Chart& chart : result.sweep_charts) out.emplace_back(chart.picture());
   return out;
 }
 
-StudyResult analyse_switch(const Case& value, const std::vector<std::string>& files,
-                           int /*threads*/) {
-  StudyResult out = begin_result(value, files);
-  add_figures(out.summary, simulated_figures(files));
-  const RecordedColumns columns = recorded_columns(read_realization(files.front())["pile"],
-                                                   "switch", dem::kSwitchColumns, files.front());
-  out.comparison.judgement.findings = {switch_sentence(out.summary)};
+void add_history(StudyResult& out) {
+  const std::string& file = out.realizations.front();
+  const RecordedColumns columns =
+      recorded_columns(read_realization(file)["pile"], "switch", dem::kSwitchColumns, file);
   out.texts.emplace_back("history.csv", recorded_csv(columns, dem::kSwitchColumns));
-  const std::vector<Chart> charts{
+  out.sweep_charts = {
       recorded_chart(columns, "Soft grains", "share", "Of the first realization.",
                      {{"soft", "soft grains"}}),
       recorded_chart(columns, "Energy", "energy / (m g d)", "Of the first realization.",
@@ -74,11 +61,6 @@ StudyResult analyse_switch(const Case& value, const std::vector<std::string>& fi
                       {"elastic", "elastic, with springs of friction"},
                       {"lost_impulses", "taken by impulses"},
                       {"lost_soft", "taken by soft contacts"}})};
-  out.sweep_charts = charts;
-  out.page = [charts](const StudyResult& result, const Realization* first) {
-    return switch_page(result, first, charts);
-  };
-  return out;
 }
 
 }  // namespace
@@ -98,7 +80,15 @@ Study hard_to_soft_study() {
   out.foresee = [](const Case& value, std::int64_t /*draws*/) {
     return dem::foresee_hard_to_soft(value.get<dem::HardToSoftSetup>());
   };
-  out.analyse = analyse_switch;
+  declare(out, {.more = add_history,
+                .told = [](const StudyResult& r) { return switch_sentence(r.summary); },
+                .subtitle =
+                    [](const StudyResult& r) {
+                      const auto& s = r.value.get<dem::HardToSoftSetup>();
+                      return fmt::format("{} disks, restitution {:g}, softness {:g}",
+                                         s.columns * s.rows, s.restitution, s.softness);
+                    },
+                .pictures = switch_pictures});
   return out;
 }
 

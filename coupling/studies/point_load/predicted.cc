@@ -33,8 +33,10 @@ const std::vector<PredictedColumn>& predicted_columns() {
       {"residual", "-",
        "root of the squared stress that the fit of five constants leaves over all of it", nullptr,
        [](P p) { return p.moduli.residual_transverse; }},
-      {"odd_share", "-", "what is not linear: stress changes forth plus back over forth less back",
-       nullptr, [](P p) { return p.odd; }},
+      {"nonlinear_share", "-",
+       "nonlinear part of the stress changes over the linear one: |forth + back| / |forth - back|, "
+       "0 if linear",
+       nullptr, [](P p) { return p.nonlinear; }},
       {"contacts_changed", "-",
        "contacts that are new, gone or begin to slide over all, the largest of the probes", nullptr,
        [](P p) {
@@ -74,7 +76,7 @@ PredictedResponse predicted_response(const std::vector<std::string>& files) {
   PredictedResponse out;
   for (const std::string& file : files) {
     const dem::StateProbes probes =
-        dem::probes_of(read_realization(file)["unloaded"].attributes, dem::kProbedLayer);
+        dem::probes_of(read_realization(file)["unloaded"], dem::kProbedLayer);
     if (probes.probes.empty()) return {};
     const ProbedPacking one = probed_packing(probes);
     for (const PredictedColumn& column : predicted_columns()) {

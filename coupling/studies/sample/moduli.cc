@@ -35,7 +35,7 @@ const std::vector<Figure<Probed>>& modulus_columns() {
       {"residual_isotropic", "-", "root of the squared stress that the isotropic fit leaves over all of it", [](M m) { return m.state.moduli[m.r].residual_isotropic; }},
       {"residual_transverse", "-", "the same of the transversely isotropic fit", [](M m) { return m.state.moduli[m.r].residual_transverse; }},
       {"asymmetry", "-", "largest |C_ab - C_ba| of the axes over the mean C_aa; 0 where the stress has a potential", [](M m) { return m.state.asymmetry[m.r]; }},
-      {"odd_share", "-", "what is not linear: stress changes forth plus back over forth less back", [](M m) { return m.state.odd[m.r]; }},
+      {"nonlinear_share", "-", "nonlinear part of the stress changes over the linear one: |forth + back| / |forth - back|, 0 if linear", [](M m) { return m.state.nonlinear[m.r]; }},
       {"gained", "-", "contacts that are new after a probe over all, the largest of the probes", [](M m) { return m.state.gained[m.r]; }},
       {"lost", "-", "contacts that are gone after a probe over all, likewise", [](M m) { return m.state.lost[m.r]; }},
       {"newly_sliding", "-", "contacts that slide after a probe and did not before over all, likewise", [](M m) { return m.state.sliding[m.r]; }},
@@ -49,7 +49,7 @@ void add_realization(const dem::StateProbes& probes, ProbedState& out, SpaceIncr
   if (!probes.lacking.empty()) {
     out.moduli.emplace_back();
     for (auto of : {&ProbedState::gained, &ProbedState::lost, &ProbedState::sliding,
-                    &ProbedState::odd, &ProbedState::asymmetry}) {
+                    &ProbedState::nonlinear, &ProbedState::asymmetry}) {
       (out.*of).push_back(kNan);
     }
     return;
@@ -60,7 +60,7 @@ void add_realization(const dem::StateProbes& probes, ProbedState& out, SpaceIncr
   out.gained.push_back(one.gained);
   out.lost.push_back(one.lost);
   out.sliding.push_back(one.sliding);
-  out.odd.push_back(one.odd);
+  out.nonlinear.push_back(one.nonlinear);
   out.asymmetry.push_back(one.asymmetry);
 }
 
@@ -78,8 +78,7 @@ std::vector<ProbedState> probed_moduli(const std::vector<std::string>& files) {
     std::vector<SpaceIncrements> increments;
     for (const std::string& file : files) {
       const Realization one = read_realization(file);
-      const dem::StateProbes probes =
-          dem::probes_of(one.snapshots.front().second.attributes, state);
+      const dem::StateProbes probes = dem::probes_of(one.snapshots.front().second, state);
       if (probes.probes.empty() && probes.lacking.empty()) break;
       SpaceIncrements own;
       add_realization(probes, probed, own);

@@ -18,9 +18,7 @@ struct ProbedState {
   std::vector<SpaceModuli> moduli;   ///< by realization
   std::vector<double> gained, lost;  ///< largest share of the contacts in any probe, likewise
   std::vector<double> sliding;
-  /// Root of sum |forth + back|^2 over sum |forth - back|^2 of the stress changes: what is not
-  /// linear. 0 of a linear law.
-  std::vector<double> odd;
+  std::vector<double> nonlinear;  ///< ProbedPacking::nonlinear, by realization
   /// Largest |C_ab - C_ba| of the axes over the mean of C_aa: 0 where the stress has a potential.
   std::vector<double> asymmetry;
   SpaceSymmetry symmetry;  ///< of all realizations together

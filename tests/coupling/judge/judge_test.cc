@@ -9,17 +9,19 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <regex>
 
 #include "coupling/judge/power.h"
 #include "coupling/judge/words.h"
 #include "coupling/result/judgement.h"
 #include "coupling/result/text_table.h"
+#include "tests/coupling/program.h"
 
 namespace grainfield::coupling {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 constexpr int kValues = 12;
 
@@ -96,10 +98,30 @@ TEST(Judge, SupportedModelsAreNamedAlone) {
   }
   const std::string line = headlines(j).front();
   EXPECT_THAT(line, StartsWith("The grains support "));
-  EXPECT_THAT(line, testing::EndsWith(", which cannot be distinguished (8 realizations, 95 %)."));
-  EXPECT_THAT(line, testing::Not(testing::ContainsRegex("more|worse|other")));
+  EXPECT_THAT(line, ::testing::EndsWith(", which cannot be distinguished (8 realizations, 95 %)."));
+  EXPECT_THAT(line, ::testing::Not(::testing::ContainsRegex("more|worse|other")));
   EXPECT_THAT(agreement_line(j), StartsWith("6 of the models agree within the errors, 3 of them "
                                             "supported: "));
+  // A description that agrees is no model.
+  Candidate description = candidate("d1", 1.0001, 7);
+  description.model.description = true;
+  all.push_back(description);
+  EXPECT_THAT(agreement_line(judge(evidence(8, 0.1), all)),
+              StartsWith("6 of the models and the description d1 agree within the errors, 3 of the "
+                         "models supported: "));
+  all.push_back(description);
+  all.back().model.name = "d2";
+  EXPECT_THAT(agreement_line(judge(evidence(8, 0.1), all)),
+              StartsWith("6 of the models and 2 descriptions agree within the errors, "));
+  all.resize(all.size() - 2);
+  const std::vector<Candidate> alone{description};
+  EXPECT_THAT(agreement_line(judge(evidence(8, 0.1), alone)),
+              StartsWith("The description d1 agrees within the errors: misfit 1, "));
+  std::vector<Candidate> poor{candidate("x", 1.1), description};
+  poor[0].model.misfit = 3;
+  EXPECT_THAT(agreement_line(judge(evidence(8, 0.1), poor)),
+              StartsWith("No model agrees within the errors, only the description d1: the misfit "
+                         "of x is 3, "));
   // One agrees, and the rest of those that cannot be distinguished do not.
   for (std::size_t k = 1; k < all.size(); ++k) all[k].model.misfit = 3;
   j = judge(evidence(8, 0.1), all);
@@ -178,6 +200,66 @@ TEST(Judge, EveryOutputShowsTheSameVerdict) {
   EXPECT_EQ(std::get<std::string>(summary.at("verdict.best_model")), "a_b");
 }
 
+TEST(Judge, TheNearestIsTheReference) {
+  const std::vector<Candidate> two{candidate("a", 1), candidate("b", 1.5)};
+  const Judgement j = judge(evidence(8, 0.1), two);
+  EXPECT_STREQ(j.find("a")->distinguishable_text(), "reference");
+  EXPECT_STREQ(j.find("b")->distinguishable_text(), "yes");
+  EXPECT_EQ(j.find("a")->supported(), Answer::yes);
+  const auto json = nlohmann::json::parse(judgement_json(j));
+  EXPECT_EQ(json["models"][0]["distinguishable"], "reference");
+  EXPECT_EQ(json["models"][1]["distinguishable"], "yes");
+  const JudgementTable table = table_of(j);
+  const auto column = std::find(table.header.begin(), table.header.end(), "distinguishable");
+  ASSERT_NE(column, table.header.end());
+  const auto k = static_cast<std::size_t>(column - table.header.begin());
+  EXPECT_EQ(table.rows[0][k], "-");
+  EXPECT_EQ(table.rows[1][k], "yes");
+  // Without errors nothing was compared.
+  EXPECT_STREQ(judge(evidence(2, 0.1), two).models.front().distinguishable_text(), "unknown");
+}
+
+// The line under the table says what the glossary says.
+TEST(Judge, TheLegendHasTheWordsOfTheGlossary) {
+  const auto in_one_line = [](std::string text) {
+    text = std::regex_replace(text, std::regex(R"(\$\\chi\^2\$)"), "chi2");
+    text = std::regex_replace(text, std::regex("[*`]"), "");
+    return std::regex_replace(text, std::regex("\\s+"), " ");
+  };
+  const std::string glossary =
+      in_one_line(testing::read_text(std::string(GRAINFIELD_CASES) + "/../docs/glossary.md"));
+  std::vector<Candidate> all{candidate("a", 1, 1), candidate("b", 1.1), candidate("c", 1.2, 7)};
+  all.back().model.description = true;
+  for (Candidate& c : all) {
+    c.model.equations = "elliptic";
+    c.heights = c.forecast;
+    c.akaike = c.model.rel_l2;
+  }
+  Evidence field = evidence(1, 0.1);
+  field.errors_from = ErrorsFrom::data;
+  field.error = Eigen::VectorXd::Constant(kValues, 0.1);
+  const Judgement j = judge(field, all);
+  const JudgementTable table = table_of(j);
+  EXPECT_EQ(table.header.size(), 12U);  // all columns
+  int meanings = 0;
+  for (const std::string& meaning : table.meanings) {
+    if (meaning.empty()) continue;
+    ++meanings;
+    EXPECT_THAT(table.note, HasSubstr(meaning));
+    std::string entry = meaning.substr(0, meaning.size() - 1);  // without its full stop
+    entry[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(entry[0])));
+    const std::size_t colon = entry.find(": ");
+    EXPECT_THAT(glossary, HasSubstr(entry.substr(0, colon + 2)));
+    EXPECT_THAT(glossary, HasSubstr(entry.substr(colon + 2)));
+  }
+  EXPECT_EQ(meanings, 10);
+  EXPECT_THAT(glossary, HasSubstr("description: the model need not be in equilibrium"));
+  EXPECT_THAT(table.note, ::testing::EndsWith(" Description: the model need not be in equilibrium, "
+                                              "and is never supported."));
+  EXPECT_THAT(judgement_text(j), HasSubstr("\n\n" + table.note + "\n"));
+  EXPECT_THAT(judgement_latex(j), HasSubstr(escape_latex(table.note)));
+}
+
 // What the number promises: of ensembles of that size 80 in 100 find the difference.
 TEST(Power, RealizationsFindTheDifferenceIn80Of100) {
   std::mt19937 random(3);
@@ -213,15 +295,21 @@ TEST(Power, IsForeseenFromFewAndSaidWhereModelsAreNotDistinguished) {
                deviation = 2 * 0.05 * noise * std::sqrt(kValues);
   const double truth = realizations_for_power(mean, deviation);
   EXPECT_NEAR(judge(evidence(40000, noise), two).find("b")->power.realizations / truth, 1, 0.15);
-  int inside = 0, said = 0;
+  int inside = 0, said = 0, open = 0, why = 0;
   constexpr int kTrials = 200;
   for (unsigned seed = 1; seed <= kTrials; ++seed) {
     const Judgement j = judge(evidence(16, noise, seed), two);
     const Power& power = j.find(j.rival)->power;
     inside += power.least <= truth && truth <= power.most;
     if (j.distinguishable == Answer::yes) continue;
-    said += note_lines(j).back().find("with a power of 80 % takes ") != std::string::npos;
+    const std::string line = note_lines(j).back();
+    said += line.find("with a power of 80 % takes ") != std::string::npos;
+    open += std::isinf(power.most) && std::isfinite(power.least);
+    why += line.find("There is no upper limit, because b is behind a by ") != std::string::npos ||
+           line.find("There is no upper limit, because a is behind b by ") != std::string::npos;
   }
+  EXPECT_GT(open, 0);
+  EXPECT_EQ(why, open);
   // Four standard deviations below 80 in 100.
   EXPECT_GT(inside, 0.69 * kTrials);
   EXPECT_GT(said, kTrials / 2);

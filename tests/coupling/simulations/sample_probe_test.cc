@@ -8,9 +8,11 @@
 #include <filesystem>
 #include <numbers>
 
+#include "coupling/elastic_constants/probed.h"
 #include "coupling/studies/sample/simulation/probe.h"
 #include "coupling/studies/sample/simulation/sample.h"
 #include "coupling/studies/sample/simulation/state.h"
+#include "tests/paths.h"
 
 namespace grainfield::dem {
 namespace {
@@ -75,7 +77,8 @@ TEST(SampleProber, FindsTheModuliOfACrystal) {
     done = prober.decide(engine, steps, make);
   }
   EXPECT_EQ(engine->checkpoint(), before);
-  const StateProbes found = probes_of(prober.attributes(), "first");
+  ASSERT_EQ(prober.found().size(), 1U);
+  const StateProbes& found = prober.found().front();
   ASSERT_EQ(found.probes.size(), 6U);
   const double c11 = std::numbers::sqrt2 * kSpring / (2 - kOverlap);
   for (const Probe& probe : found.probes) {
@@ -160,7 +163,8 @@ TEST(SampleProber, SaysThatNothingBearsLoad) {
   engine->set_velocity_gradient(kOverlap / time * Eigen::Matrix3d::Identity());
   engine->step(steps);
   EXPECT_TRUE(prober.decide(engine, steps, [] { return make_engine(crystal_settings()); }));
-  const StateProbes found = probes_of(prober.attributes(), "first");
+  ASSERT_EQ(prober.found().size(), 1U);
+  const StateProbes& found = prober.found().front();
   EXPECT_THAT(found.lacking, ::testing::StartsWith("it bears no load"));
   EXPECT_TRUE(found.probes.empty());
   EXPECT_EQ(engine->checkpoint(), before);
@@ -190,7 +194,8 @@ TEST(SampleProber, SaysThatGrainsDoNotRest) {
     done = prober.decide(engine, steps, [] { return make_engine(crystal_settings()); });
   }
   EXPECT_EQ(looks, 3);  // 40 s each
-  const StateProbes found = probes_of(prober.attributes(), "first");
+  ASSERT_EQ(prober.found().size(), 1U);
+  const StateProbes& found = prober.found().front();
   EXPECT_THAT(found.lacking,
               ::testing::StartsWith("its grains do not come to rest for a strain of 1e-05"));
   EXPECT_TRUE(found.probes.empty());
@@ -206,9 +211,8 @@ TEST(SampleProber, LeavesThePathAsItWas) {
       EXPECT_TRUE(same_places(plain.snapshots[k].second, probed.snapshots[k].second)) << boundary;
     }
     EXPECT_EQ(plain.figures, probed.figures);
-    const Attributes& told = probed.snapshots[0].second.attributes;
     for (const std::string& state : probed_states()) {
-      const StateProbes found = probes_of(told, state);
+      const StateProbes found = probes_of(probed.snapshots[0].second, state);
       ASSERT_EQ(found.probes.size(), boundary == std::string("walls") ? 4U : 6U);
       for (const Probe& probe : found.probes) {
         const int a = probe.direction[0] - 'x', b = probe.direction[1] - 'x';
@@ -221,7 +225,7 @@ TEST(SampleProber, LeavesThePathAsItWas) {
         EXPECT_LT(probe.outcomes[0].lost, 0.05);
       }
     }
-    EXPECT_TRUE(probes_of(plain.snapshots[0].second.attributes, "first").probes.empty());
+    EXPECT_TRUE(probes_of(plain.snapshots[0].second, "first").probes.empty());
   }
 }
 
@@ -249,6 +253,10 @@ TEST(SampleProber, GoesOnFromAnyMoment) {
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_TRUE(same_places(whole.snapshots[k].second, parts.snapshots[k].second));
     EXPECT_EQ(whole.snapshots[k].second.attributes, parts.snapshots[k].second.attributes);
+    for (const auto& [name, table] : whole.snapshots[k].second.tables) {
+      const NumberTable& other = parts.snapshots[k].second.tables.at(name);
+      for (std::size_t c = 0; c < table.size(); ++c) EXPECT_EQ(table[c].values, other[c].values);
+    }
   }
 }
 
@@ -282,18 +290,76 @@ TEST(ProbeRecord, ComesBack) {
     probe.outcomes[1].stress = all.stress / 3;
     probe.outcomes[1].lost = 0.25;
   }
-  Attributes attributes{{"seed", "4"}};
-  put_probes(all, attributes);
-  const StateProbes back = probes_of(attributes, "first");
+  const std::string file =
+      fmt::format("{}/probes_{}.h5", std::filesystem::temp_directory_path().string(), ::getpid());
+  Snapshot state;
+  put_probes(all, state);
+  write_snapshot(file, "/state_000", state);
+  const Snapshot read = read_snapshot(file, "/state_000");
+  std::filesystem::remove(file);
+  const StateProbes back = probes_of(read, "first");
   EXPECT_EQ(back.stress, all.stress);
   ASSERT_EQ(back.probes.size(), 2U);
   EXPECT_EQ(back.probes[1].direction, "xz");
   EXPECT_EQ(back.probes[0].outcomes[0].gradient, all.probes[0].outcomes[0].gradient);
   EXPECT_EQ(back.probes[1].outcomes[1].stress, all.probes[1].outcomes[1].stress);
   EXPECT_EQ(back.probes[1].outcomes[1].lost, 0.25);
-  EXPECT_TRUE(probes_of(attributes, "prepared").probes.empty());
-  attributes["probe.first.xz.back"] = "1 2 three";
-  EXPECT_THROW(probes_of(attributes, "first"), std::invalid_argument);
+  EXPECT_TRUE(probes_of(read, "prepared").probes.empty());
+  EXPECT_TRUE(read.attributes.empty());
+  // A state that could not be probed.
+  StateProbes none;
+  none.state = "first";
+  none.lacking = "it bears no load";
+  put_probes(none, state);
+  EXPECT_TRUE(state.tables.empty());
+  EXPECT_EQ(probes_of(state, "first").lacking, none.lacking);
+  EXPECT_TRUE(probes_of(state, "first").probes.empty());
+}
+
+// A file that version 0.9.0 wrote, with the numbers as text in attributes: thirty spheres in a
+// cell. The moduli are those of its summary.
+TEST(ProbeRecord, OfAFileOfVersion090HasItsNumbers) {
+  const std::string file =
+      std::string(GRAINFIELD_SOURCES) + "/tests/coupling/simulations/probes_0_9_0.h5";
+  const Snapshot state = read_snapshot(file, "/realization_000/state_000");
+  ASSERT_TRUE(state.tables.empty());
+  const StateProbes old = probes_of(state, "first");
+  const auto known = [](const StateProbes& probes) {
+    EXPECT_EQ(probes.probes.size(), 6U);
+    const coupling::ProbedPacking packing = coupling::probed_packing(probes);
+    EXPECT_NEAR(packing.moduli.young / 14100102.15067388, 1, 1e-9);
+    EXPECT_NEAR(packing.moduli.g_vh / 5067839.818800869, 1, 1e-9);
+    EXPECT_NEAR(packing.nonlinear / 0.008515313859257346, 1, 1e-6);
+  };
+  known(old);
+  Snapshot fresh;
+  put_probes(old, fresh);
+  known(probes_of(fresh, "first"));
+}
+
+TEST(ProbeRecord, IsRefusedWhereItIsBroken) {
+  const auto refusal = [](const Snapshot& state) -> std::string {
+    try {
+      probes_of(state, "first");
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "none";
+  };
+  StateProbes all;
+  all.state = "first";
+  add_outcome(all, "xx", 0, {});
+  Snapshot state;
+  put_probes(all, state);
+  EXPECT_EQ(refusal(state), "none");
+  NumberTable& table = state.tables.at("probes_first");
+  table[1].values[1] = 4;
+  EXPECT_EQ(refusal(state), "table \"probes_first\": found axis 4, allowed: 1, 2, 3");
+  table[1].name = "x";
+  EXPECT_EQ(refusal(state), "table \"probes_first\": column across is missing");
+  Snapshot old;
+  old.attributes["probe.first.xz.back"] = "1 2 three";
+  EXPECT_EQ(refusal(old), "attribute \"probe.first.xz.back\": found 2 numbers, allowed: 21");
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ TEST(SampleBox, ProbesGiveModuliAndABlockGoesBeside) {
                 0.05 * of("young"));
     EXPECT_LT(of("lost"), 0.05);
     EXPECT_LT(of("gained"), 0.05);
-    EXPECT_LT(of("odd_share"), 0.2);
+    EXPECT_LT(of("nonlinear_share"), 0.2);
     EXPECT_LT(of("asymmetry"), 0.2);
     EXPECT_LE(of("residual_transverse"), of("residual_isotropic") + 1e-12);
     // Smooth walls carry no shear.

@@ -136,7 +136,7 @@ TEST(SpaceLoadRun, MeasuredModuliPredictTheResponse) {
   // Softer than the grains' material by their overlaps, and not by orders of magnitude more.
   EXPECT_LT(number(summary, "predicted.e_v"), 0.5 * 1e7);
   EXPECT_GT(number(summary, "predicted.e_v"), 1e-3 * 1e7);
-  EXPECT_LT(number(summary, "predicted.odd_share"), 0.3);
+  EXPECT_LT(number(summary, "predicted.nonlinear_share"), 0.3);
   EXPECT_LT(number(summary, "predicted.residual"), 0.5);
   for (const char* model : {"predicted", "predicted_smooth"}) {
     EXPECT_GT(number(summary, std::string("compare.") + model + ".rel_l2"), 0) << model;

@@ -32,6 +32,8 @@ constexpr double kLostLoad = 1e-4;
 constexpr double kSlowest = 0.5, kPatience = 50;
 // A wall of less friction carries no shear to speak of.
 constexpr double kRoughWall = 0.1;
+// Components of a strain.
+constexpr std::uint64_t kMostDirections = 6;
 
 std::pair<int, int> axes_of(const std::string& direction) {
   return {direction[0] - 'x', direction[1] - 'x'};
@@ -49,6 +51,20 @@ std::map<std::tuple<std::int64_t, std::int64_t, std::array<int, 3>>, bool> conta
   std::map<std::tuple<std::int64_t, std::int64_t, std::array<int, 3>>, bool> out;
   for (const Contact& c : s.contacts) out[{c.i, c.j, c.image}] = c.sliding;
   return out;
+}
+
+void show(StateProbes& all, Archive& archive) {
+  archive(all.state);
+  archive(all.stress);
+  archive(all.lacking);
+  auto directions = static_cast<std::uint64_t>(all.probes.size());
+  archive(directions);
+  archive.require(directions <= kMostDirections);
+  all.probes.resize(directions);
+  for (Probe& probe : all.probes) {
+    archive(probe.direction);
+    archive(probe.outcomes);
+  }
 }
 
 }  // namespace
@@ -78,6 +94,7 @@ void SampleProber::begin(Engine& engine, const std::string& state, bool held) {
   origin_ = engine.checkpoint();
   energy_ = engine.measure().elastic_energy;
   number_ = -1;
+  found_.emplace_back().state = state_;
   engine.set_background_damping(setup_.rest.background_damping);
   if (!held) stand_still(engine);
   enter(Stage::calm);
@@ -150,7 +167,7 @@ bool SampleProber::decide(std::unique_ptr<Engine>& engine, long steps, const Mak
     none.state = state_;
     none.lacking = hopeless(d, engine->time_step());
     if (none.lacking.empty()) return false;
-    put_probes(none, found_);
+    found_.back() = none;
     give_back(engine, make);
     return true;
   }
@@ -207,14 +224,7 @@ void SampleProber::note(const Engine& engine, const Make& make) {
   calm->restore(base_);
   const Snapshot before = calm->snapshot(), now = engine.snapshot();
   const SampleState was = sample_state(before), is = sample_state(now);
-  StateProbes probes = probes_of(found_, state_);
-  probes.stress = was.contact_stress;
-  const std::string direction = probe_directions(setup_)[static_cast<std::size_t>(number_ / 2)];
-  const auto known = std::find_if(probes.probes.begin(), probes.probes.end(),
-                                  [&](const Probe& p) { return p.direction == direction; });
-  Probe& probe =
-      known == probes.probes.end() ? probes.probes.emplace_back(Probe{direction, {}}) : *known;
-  ProbeOutcome& out = probe.outcomes[static_cast<std::size_t>(number_ % 2)];
+  ProbeOutcome out;
   out.gradient = is.edges * was.edges.inverse() - Eigen::Matrix3d::Identity();
   out.stress = is.contact_stress;
   const auto old = contacts_of(before), fresh = contacts_of(now);
@@ -225,7 +235,9 @@ void SampleProber::note(const Engine& engine, const Make& make) {
     if (at != old.end() && slides && !at->second) out.sliding += share;
   }
   for (const auto& [pair, slides] : old) out.lost += fresh.contains(pair) ? 0 : share;
-  put_probes(probes, found_);
+  found_.back().stress = was.contact_stress;
+  add_outcome(found_.back(), probe_directions(setup_)[static_cast<std::size_t>(number_ / 2)],
+              number_, out);
 }
 
 double SampleProber::share() const { return std::max(0, number_) / static_cast<double>(count()); }
@@ -240,18 +252,11 @@ void SampleProber::visit(Archive& archive) {
   archive(move_);
   archive(energy_);
   archive(unrest_);
-  auto lines = static_cast<std::uint64_t>(found_.size());
-  archive(lines);
-  Attributes kept = std::move(found_);
-  found_.clear();
-  auto at = kept.begin();
-  for (std::uint64_t k = 0; k < lines; ++k) {
-    std::string name, text;
-    if (!archive.is_reading()) std::tie(name, text) = *at++;
-    archive(name);
-    archive(text);
-    found_[name] = text;
-  }
+  auto states = static_cast<std::uint64_t>(found_.size());
+  archive(states);
+  archive.require(states <= probed_states().size());
+  found_.resize(states);
+  for (StateProbes& one : found_) show(one, archive);
 }
 
 }  // namespace grainfield::dem

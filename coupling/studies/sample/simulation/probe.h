@@ -40,8 +40,8 @@ class SampleProber {
   bool decide(std::unique_ptr<Engine>& engine, long steps, const Make& make);
   /// Share of the probes that are done.
   double share() const;
-  /// Of all states so far.
-  const Attributes& attributes() const { return found_; }
+  /// All states so far.
+  const std::vector<StateProbes>& found() const { return found_; }
   void visit(Archive& archive);
 
  private:
@@ -63,7 +63,7 @@ class SampleProber {
   long steps_ = 0, move_ = 0;  // of the stage; of a motion
   double energy_ = 0;          // elastic, as it came, J
   double unrest_ = 0;          // kinetic over elastic energy some time ago
-  Attributes found_;
+  std::vector<StateProbes> found_;
 };
 
 }  // namespace grainfield::dem

@@ -414,8 +414,9 @@ void SampleRun::record() {
   check_not_crushed(setup_, engine_->measure(), fmt::format("at a strain of {:.3g}", now),
                     "strain");
   states_.emplace_back(sample_record(*engine_, plan_, number, now, seed_));
-  if (number == 0)
-    states_.front()->attributes.insert(prober_.attributes().begin(), prober_.attributes().end());
+  if (number == 0) {
+    for (const StateProbes& probes : prober_.found()) put_probes(probes, *states_.front());
+  }
   const auto count = static_cast<int>(states_.size());
   if (count == states_of(plan_)) return begin(Phase::done);
   if (count == plan_.records + 1) return begin(Phase::unload);

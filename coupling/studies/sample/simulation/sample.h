@@ -20,7 +20,7 @@ namespace grainfield::dem {
 /// "sample.stress_error": largest relative error of a servo during the deformation, at any of its
 /// measurements, "sample.stress_rms_error" the root of their mean square (where there is a servo).
 /// Dropped: "sample.gap_spheres" and "sample.dropped_solid_fraction", as the lid is put on.
-/// Attributes probe.* of "state_000": what small strains have shown (probe_record.h).
+/// Tables probes_* of "state_000": what small strains have shown (probe_record.h).
 /// `filled`: a recorded state between walls that takes the place of drawing and dropping
 /// (plan.filling "dropped"); then the seed is only recorded.
 /// Throws std::invalid_argument naming the key that does not hold ("sample.pressure"). The bits of
