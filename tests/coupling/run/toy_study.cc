@@ -8,7 +8,7 @@
 #include "coupling/run/ensemble.h"
 #include "coupling/run/grain_keys.h"
 #include "coupling/studies/lattice_pile/simulation.h"
-#include "dem/packing/lattice_pile.h"
+#include "dem/grains/lattice_pile.h"
 #include "dem/snapshot/contact_changes.h"
 
 namespace grainfield::coupling {
