@@ -27,9 +27,8 @@ extern "C" void grainfield_fe_make(const char* name,
   const auto& rows = grainfield::continuum::fe::rows();
   const auto row = rows.find(name);
   if (row == rows.end())
-    throw grainfield::continuum::ComputationFailed("the finite-element library has no model " +
-                                                   std::string(name) +
-                                                   ": it is of another version");
+    throw grainfield::ComputationFailed("the finite-element library has no model " +
+                                        std::string(name) + ": it is of another version");
   model = row->second(name, settings);
 }
 

@@ -20,7 +20,7 @@ using dem::Vec3;
 constexpr int kLevels = 10;
 constexpr double kLeastAbove = 0.05;  // of the weight
 
-double weight_above(const Snapshot& s, double level) {
+double weight_of_centres_above(const Snapshot& s, double level) {
   double mass = 0;
   for (const Grain& g : s.grains) {
     if (!g.fixed && g.position.y() > level) mass += g.mass;
@@ -29,11 +29,11 @@ double weight_above(const Snapshot& s, double level) {
 }
 
 double largest_error(const Snapshot& s, double top) {
-  const double all = weight_above(s, -std::numeric_limits<double>::infinity());
+  const double all = weight_of_centres_above(s, -std::numeric_limits<double>::infinity());
   double largest = 0;
   for (int k = 0; k < kLevels; ++k) {
     const double level = top * k / kLevels;
-    if (weight_above(s, level) < kLeastAbove * all) break;
+    if (weight_of_centres_above(s, level) < kLeastAbove * all) break;
     largest = std::max(largest, std::fabs(weight_carried_error(s, level)));
   }
   return largest;
@@ -64,7 +64,7 @@ double weight_carried_error(const Snapshot& s, double level) {
     const bool first = is_above(c.i), second = c.j >= 0 && is_above(c.j);
     if (first != second) force += first ? c.force.y() : -c.force.y();
   }
-  const double weight = weight_above(s, level);
+  const double weight = weight_of_centres_above(s, level);
   return weight > 0 ? force / weight - 1 : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -87,8 +87,8 @@ Relaxation measure_relaxation(const Snapshot& before, const Snapshot& after, dou
   }
   if (free == 0) throw std::invalid_argument("relaxation: found no grain that can move");
   r.mean_displacement = way / free;
-  r.base_before =
-      base_force(before).y() / weight_above(before, -std::numeric_limits<double>::infinity());
+  r.base_before = base_force(before).y() /
+                  weight_of_centres_above(before, -std::numeric_limits<double>::infinity());
   r.levels_before = largest_error(before, top);
   r.levels_after = largest_error(after, top);
   r.forces = change_of_forces(before, after);

@@ -9,6 +9,7 @@
 #include "coupling/specimen/surface.h"
 #include "coupling/studies/pile/simulation.h"
 #include "dem/engine/engine.h"
+#include "dem/grains/placed.h"
 #include "dem/pouring/funnel.h"
 #include "dem/pouring/source.h"
 #include "dem/run/common.h"
