@@ -2,6 +2,25 @@
 
 namespace grainfield::dem {
 
+void Archive::operator()(std::map<std::string, double>& figures) {
+  std::vector<double> values;
+  std::string names;
+  for (const auto& [key, value] : figures) {
+    names += key + "\n";
+    values.push_back(value);
+  }
+  (*this)(names);
+  (*this)(values);
+  if (!is_reading()) return;
+  figures.clear();
+  std::size_t at = 0, k = 0;
+  for (std::size_t end; (end = names.find('\n', at)) != std::string::npos; at = end + 1, ++k) {
+    require(k < values.size());
+    figures[names.substr(at, end - at)] = values[k];
+  }
+  require(k == values.size());
+}
+
 void Archive::snapshot(std::optional<Snapshot>& snapshot, const std::string& name) {
   int there = snapshot.has_value() ? 1 : 0;
   (*this)(there);

@@ -1,6 +1,7 @@
 // What a checkpoint holds of a run: one list, for writing and for reading.
 #pragma once
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,6 +36,7 @@ class Archive {
       writer_.put(value);
     }
   }
+  void operator()(std::map<std::string, double>& figures);
   /// A snapshot that may be there, under a name of its own.
   void snapshot(std::optional<Snapshot>& snapshot, const std::string& name);
   /// An engine that may be there; make() gives it for reading, with its walls and without grains.

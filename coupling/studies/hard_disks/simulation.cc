@@ -279,7 +279,7 @@ class HardDisksRun final : public ArchivedRun {
     archive(energy_);
     archive(start_);
     archive(tally_);
-    visit_figures(archive);
+    archive(figures_);
     snapshots_.resize(at_);
     for (std::size_t k = 0; k < at_; ++k) {
       archive.snapshot(snapshots_[k], name_of_fraction(setup_.fractions[k]));
@@ -296,26 +296,6 @@ class HardDisksRun final : public ArchivedRun {
       if (archive.is_reading()) archive.require(engine_->settle());
     }
   }
-  void visit_figures(Archive& archive) {
-    std::vector<double> values;
-    std::string names;
-    for (const auto& [key, value] : figures_) {
-      names += key + "\n";
-      values.push_back(value);
-    }
-    archive(names);
-    archive(values);
-    if (!archive.is_reading()) return;
-    figures_.clear();
-    std::size_t from = 0;
-    for (const double value : values) {
-      const std::size_t end = names.find('\n', from);
-      archive.require(end != std::string::npos);
-      figures_[names.substr(from, end - from)] = value;
-      from = end + 1;
-    }
-  }
-
   HardDisksSetup setup_;
   std::uint64_t seed_;
   Random random_;

@@ -253,7 +253,7 @@ class CollisionRun final : public PairRun {
     archive(before_first_);
     archive(before_second_);
     records_.visit(archive);
-    visit_figures(archive);
+    archive(figures_);
     archive.engine(engine_, [this] { return bodies_.empty_engine(); });
     archive.require(at_ >= 0 && at_ <= static_cast<int>(launches_.size()) && engine_ != nullptr);
   }

@@ -198,7 +198,7 @@ class PathRun final : public PairRun {
     archive(memory);
     archive(done_loops_);
     records_.visit(archive);
-    visit_figures(archive);
+    archive(figures_);
     archive.require(now_.loop >= 0 && now_.loop <= loops_);
     if (!archive.is_reading()) return;
     if (!done()) prepare();  // the first bodies stay those of the constructor

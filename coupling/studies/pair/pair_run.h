@@ -21,7 +21,6 @@ class PairRun : public ArchivedRun {
   RunResult result_of(const PairBodies& bodies, long steps) const;
   /// Unless it is not finite.
   void add_figure(const std::string& key, double value);
-  void visit_figures(Archive& archive);
 
   PairSetup setup_;
   std::uint64_t seed_;

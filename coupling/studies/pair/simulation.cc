@@ -43,25 +43,6 @@ void PairRun::add_figure(const std::string& key, double value) {
   if (std::isfinite(value)) figures_[key] = value;
 }
 
-void PairRun::visit_figures(Archive& archive) {
-  std::vector<double> values;
-  std::string names;
-  for (const auto& [key, value] : figures_) {
-    names += key + "\n";
-    values.push_back(value);
-  }
-  archive(names);
-  archive(values);
-  if (!archive.is_reading()) return;
-  figures_.clear();
-  std::size_t at = 0, k = 0;
-  for (std::size_t end; (end = names.find('\n', at)) != std::string::npos; at = end + 1, ++k) {
-    archive.require(k < values.size());
-    figures_[names.substr(at, end - at)] = values[k];
-  }
-  archive.require(k == values.size());
-}
-
 std::vector<PairLaunch> pair_launches(const PairSetup& s) {
   std::vector<PairLaunch> out{{s.speed, s.angle, "pair.", "pair.speed", "pair.angle"}};
   for (const double v : s.speeds) {
