@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "coupling/case/declare.h"
 #include "coupling/case/study.h"
 #include "coupling/report/judgement.h"
@@ -14,7 +16,9 @@
 #include "coupling/run/run_case.h"
 #include "coupling/run/study_result.h"
 #include "coupling/run/summary_keys.h"
-#include "coupling/studies/lattice_pile/simulation.h"
+#include "dem/heap/grain_family.h"
+#include "dem/packing/lattice_pile.h"
+#include "dem/run/phased_run.h"
 #include "dem/snapshot/contact_changes.h"
 #include "tests/coupling/program.h"
 
@@ -26,14 +30,80 @@ using ::testing::HasSubstr;
 
 // Close-packed disks: what does the base carry?
 struct StackSetup {
-  StackSetup() { pile.lattice.base_grains = 4; }
-  dem::LatticePileSetup pile;
+  dem::LatticeSetup lattice{.base_grains = 4};
+  dem::MaterialSetup material;
+  dem::MotionSetup motion;
+  dem::RestSetup rest{.unbalanced_force_ratio = 1e-8};
   double tolerance = 1e-3;
+
+  auto members() const { return std::tie(lattice, material, motion, rest, tolerance); }
+};
+
+struct StackGroundwork {
+  using Setup = StackSetup;
+  static constexpr const char* kName = "stack";
+  static void check(const Setup& s) { dem::check_lattice(s.lattice); }
+  static dem::ShapedGrain draw(const Setup& s, dem::Random&, dem::Allowance&) {
+    return dem::disk_grain(s.lattice.radius);
+  }
+  static dem::EngineSettings settings(const Setup& s, const dem::ShapedGrain& disk,
+                                      double reserve) {
+    const dem::GrainExtremes extremes = dem::extremes_of({disk}, s.material.density);
+    return dem::engine_settings(s.material, s.motion, extremes, 1, false, reserve);
+  }
+  static dem::Outlook outlook(const Setup& s, const dem::EngineSettings& settings) {
+    dem::Outlook out;
+    out.take_step(settings);
+    for (const int row : dem::lattice_rows(s.lattice)) out.grains += row;
+    return out;
+  }
+};
+
+enum class StackPhase : int { rest, done };
+
+class StackRun final : public dem::PhasedRun<StackGroundwork, StackPhase> {
+ public:
+  StackRun(const StackSetup& setup, std::uint64_t seed, int threads)
+      : PhasedRun(setup, seed, {{"rest", true, 0, 1}, {"done", true, 1, 1}}) {
+    take_settings(dem::disk_grain(setup_.lattice.radius), threads);
+    engine_ = empty_engine();
+    add(dem::lattice_pile_grains(setup_.lattice, setup_.material.density));
+    enter(StackPhase::rest);
+  }
+  dem::RunResult result() const override {
+    dem::RunResult out;
+    if (stack_) out.snapshots = {{"pile", *stack_}};
+    return out;
+  }
+
+ private:
+  std::unique_ptr<dem::Engine> empty_engine() const override {
+    auto engine = dem::make_engine(settings_);
+    engine->add_wall(
+        {"floor", dem::Vec3(0, 0, 0), dem::Vec3(0, 1, 0), setup_.material.floor_friction});
+    return engine;
+  }
+  void decide() override {
+    if (!has_come_to_rest(engine_->measure(), "stack", "")) return;
+    stack_ = dem::named_snapshot(*engine_, "pile", seed_, {});
+    phases_.enter(StackPhase::done);
+  }
+  double share(const dem::Diagnostics& state) const override {
+    return dem::rest_progress(state, setup_.rest);
+  }
+  void visit(dem::Archive& archive) override {
+    phases_.visit(archive);
+    visit_engine(archive);
+    archive.snapshot(stack_, "pile");
+    archive.require(done() == stack_.has_value());
+  }
+
+  std::optional<dem::Snapshot> stack_;
 };
 
 void declare_stack_keys(SectionKeys s) {
   s.number(
-      "width", "-", +[](Case& c) -> int& { return c.get<StackSetup>().pile.lattice.base_grains; },
+      "width", "-", +[](Case& c) -> int& { return c.get<StackSetup>().lattice.base_grains; },
       {3, 100}, "disks in the lowest row");
   s.number(
       "tolerance", "-", +[](Case& c) -> double& { return c.get<StackSetup>().tolerance; },
@@ -83,17 +153,18 @@ Study stack_study() {
   out.meaning = "close-packed disks and their weight";
   out.sections = {
       kMaterialKeys, kMotionKeys, kRestKeys, {"stack", KeyRole::grains, declare_stack_keys}};
-  out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<StackSetup>().pile.material; };
-  out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<StackSetup>().pile.motion; };
-  out.rest = [](Case& c) -> dem::RestSetup& { return c.get<StackSetup>().pile.rest; };
+  out.material = [](Case& c) -> dem::MaterialSetup& { return c.get<StackSetup>().material; };
+  out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<StackSetup>().motion; };
+  out.rest = [](Case& c) -> dem::RestSetup& { return c.get<StackSetup>().rest; };
   out.figures = {stack_figures};
   out.models_optional = true;
-  out.make_run = [](const Case& value, std::int64_t number, int threads) {
-    return dem::make_lattice_pile_run(value.get<StackSetup>().pile, realization_seed(value, number),
+  out.make_run = [](const Case& value, std::int64_t number,
+                    int threads) -> std::unique_ptr<dem::Run> {
+    return std::make_unique<StackRun>(value.get<StackSetup>(), realization_seed(value, number),
                                       threads);
   };
-  out.foresee = [](const Case& value, std::int64_t) {
-    return dem::foresee_lattice_pile(value.get<StackSetup>().pile);
+  out.foresee = [](const Case& value, std::int64_t draws) {
+    return dem::foresee<StackGroundwork>(value.get<StackSetup>(), realization_seeds(value), draws);
   };
   out.analyse = analyse_stack;
   return out;
