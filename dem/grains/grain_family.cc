@@ -223,39 +223,26 @@ ShapedGrain draw_grain(const ShapeSetup& s, Random& random) {
   return g;
 }
 
-GrainTally::GrainTally(double density) : density_(density) {
-  extremes_.least_mass = std::numeric_limits<double>::infinity();
-}
-
-void GrainTally::add(const ShapedGrain& g) {
-  const double mass = density_ * g.area;
-  extremes_.least_mass = std::min(extremes_.least_mass, mass);
-  largest_radius_ = std::max(largest_radius_, g.radius);
-  area_ += g.area;
-  squares_ += g.area * g.area;
-  ++count_;
-  if (g.outline.empty()) return;
-  const auto keep_quickest = [mass](double edge, double& quickest, double& most, double& its_mass) {
-    const double quick = edge / std::sqrt(mass);
-    if (quick <= quickest) return;
-    quickest = quick;
-    most = edge;
-    its_mass = mass;
-  };
-  keep_quickest(edge_steepness(g.outline), steepest_, extremes_.steepest_edge,
-                extremes_.steep_mass);
-  keep_quickest(edge_width(g.outline), widest_, extremes_.widest_edge, extremes_.wide_mass);
-}
-
-double GrainTally::area_variation() const {
-  const double n = static_cast<double>(count_), mean = area_ / n;
-  return std::sqrt(std::max(0.0, squares_ / n - mean * mean)) / mean;
-}
-
 GrainExtremes extremes_of(const std::vector<ShapedGrain>& grains, double density) {
-  GrainTally tally(density);
-  for (const ShapedGrain& g : grains) tally.add(g);
-  return tally.extremes();
+  GrainExtremes out;
+  out.least_mass = std::numeric_limits<double>::infinity();
+  double steepest = 0, widest = 0;  // over the square root of the mass
+  for (const ShapedGrain& g : grains) {
+    const double mass = density * g.area;
+    out.least_mass = std::min(out.least_mass, mass);
+    if (g.outline.empty()) continue;
+    const auto keep_quickest = [mass](double edge, double& quickest, double& most,
+                                      double& its_mass) {
+      const double quick = edge / std::sqrt(mass);
+      if (quick <= quickest) return;
+      quickest = quick;
+      most = edge;
+      its_mass = mass;
+    };
+    keep_quickest(edge_steepness(g.outline), steepest, out.steepest_edge, out.steep_mass);
+    keep_quickest(edge_width(g.outline), widest, out.widest_edge, out.wide_mass);
+  }
+  return out;
 }
 
 double largest_radius(const std::vector<ShapedGrain>& grains) {

@@ -41,26 +41,6 @@ double draw_work(const ShapeSetup& shape);
 /// A disk of this radius; draws nothing.
 ShapedGrain disk_grain(double radius);
 
-/// What is asked of a population of grains, without keeping them.
-class GrainTally {
- public:
-  explicit GrainTally(double density);
-  void add(const ShapedGrain& grain);
-
-  std::int64_t count() const { return count_; }
-  double area() const { return area_; }                      ///< of all, m2
-  double largest_radius() const { return largest_radius_; }  ///< m
-  const GrainExtremes& extremes() const { return extremes_; }
-  /// Standard deviation of the grains' areas over their mean.
-  double area_variation() const;
-
- private:
-  double density_, area_ = 0, squares_ = 0, largest_radius_ = 0;
-  double steepest_ = 0, widest_ = 0;  // over the square root of the mass
-  std::int64_t count_ = 0;
-  GrainExtremes extremes_;
-};
-
 /// What bounds the time step of these grains.
 GrainExtremes extremes_of(const std::vector<ShapedGrain>& grains, double density);
 double largest_radius(const std::vector<ShapedGrain>& grains);

@@ -203,11 +203,12 @@ double farthest_reach(const PackingSetup& p) {
   return is_angular(p) ? radii_of(family_of(p), largest_radius(p)).most : largest_radius(p);
 }
 
-std::vector<ShapedGrain> draw_layer(const PackingSetup& p, Random& random, std::int64_t most) {
+std::vector<ShapedGrain> draw_layer(const PackingSetup& p, Random& random,
+                                    const std::function<bool()>& may_follow) {
   const auto sides = layer_sides(p);
   const double goal = kSettledFraction * sides[0] * sides[1] * p.depth;
   std::vector<ShapedGrain> out;
-  for (double filled = 0; filled < goal && static_cast<std::int64_t>(out.size()) < most;) {
+  for (double filled = 0; filled < goal && may_follow();) {
     const double radius = draw_radius(p, random);
     if (is_angular(p)) {
       out.push_back(draw_superellipsoid(family_of(p), radius, random));
@@ -322,8 +323,12 @@ std::vector<NewGrain> floor_3d(const PackingSetup& p, double density, Random& ra
 }
 
 std::vector<NewGrain> grains_3d(const PackingSetup& p, double density, Random& random) {
-  if (is_lattice(p)) return lattice(p, density, random);
-  const std::vector<ShapedGrain> drawn = draw_layer(p, random);
+  return is_lattice(p) ? lattice(p, density, random)
+                       : place_layer(p, draw_layer(p, random), density, random);
+}
+
+std::vector<NewGrain> place_layer(const PackingSetup& p, const std::vector<ShapedGrain>& drawn,
+                                  double density, Random& random) {
   std::vector<double> radii;
   for (const ShapedGrain& g : drawn) radii.push_back(g.radius);
   const auto sides = layer_sides(p);

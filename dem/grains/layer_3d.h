@@ -3,8 +3,7 @@
 // 0.
 #pragma once
 #include <array>
-#include <cstdint>
-#include <limits>
+#include <functional>
 #include <vector>
 
 #include "dem/engine/engine.h"
@@ -30,9 +29,10 @@ double mean_sphere_volume(const PackingSetup& packing);
 double farthest_reach(const PackingSetup& packing);
 
 /// Grains of a random layer in the order in which they are drawn, as many as fill packing.depth at
-/// kSettledFraction, `most` at most.
-std::vector<ShapedGrain> draw_layer(const PackingSetup& packing, Random& random,
-                                    std::int64_t most = std::numeric_limits<std::int64_t>::max());
+/// kSettledFraction, while another one `may_follow`.
+std::vector<ShapedGrain> draw_layer(
+    const PackingSetup& packing, Random& random,
+    const std::function<bool()>& may_follow = [] { return true; });
 
 /// Lengths of the layer along x and y, m: packing.width both; of a close packing those of its
 /// lattice, whose rows along y are even in number and make it as square as they can.
@@ -59,6 +59,10 @@ std::vector<NewGrain> floor_3d(const PackingSetup& packing, double density, Rand
 /// the horizontal plane, in the order ABC (fcc) or AB (hcp), touching without overlap (jitter:
 /// smaller spheres at the same places).
 std::vector<NewGrain> grains_3d(const PackingSetup& packing, double density, Random& random);
+/// Those of a random layer, drawn before.
+std::vector<NewGrain> place_layer(const PackingSetup& packing,
+                                  const std::vector<ShapedGrain>& drawn, double density,
+                                  Random& random);
 
 /// Height of the free surface, m: mean over columns two mean diameters wide of the highest top. 0
 /// without free grains.

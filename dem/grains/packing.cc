@@ -153,10 +153,11 @@ void add_row(const PackingSetup& p, bool shifted, double y, double density, bool
 
 }  // namespace
 
-GrainSupply::GrainSupply(const PackingSetup& packing, Random& random) : packing_(packing) {
+GrainSupply::GrainSupply(const PackingSetup& packing, Random& random, double most)
+    : packing_(packing) {
   if (!draws_pentagons(packing)) return;
   const ShapeSetup shape = pentagon(packing);
-  const auto count = static_cast<std::size_t>(pentagons_drawn(packing));
+  const auto count = static_cast<std::size_t>(std::min(pentagons_drawn(packing), most));
   while (drawn_.size() < count) drawn_.push_back(draw_grain(shape, random));
 }
 

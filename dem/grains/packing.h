@@ -1,6 +1,7 @@
 // Where grains and walls of a layer start: lattices, and rows to be dropped one after the other.
 // The floor's surface is y = 0; the layer spans x in [-width/2, width/2] between side walls.
 #pragma once
+#include <limits>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -79,7 +80,9 @@ std::vector<Wall> layer_walls(const PackingSetup& packing, const MaterialSetup& 
 /// chosen for exactly these.
 class GrainSupply {
  public:
-  GrainSupply(const PackingSetup& packing, Random& random);
+  static constexpr double kMostDrawn = std::numeric_limits<double>::infinity();
+  /// Of pentagons at most so many are drawn.
+  GrainSupply(const PackingSetup& packing, Random& random, double most = kMostDrawn);
 
   /// The next grains, as many as fit side by side into the width by their bounding circles. Throws
   /// ComputationFailed when the supply is used up.

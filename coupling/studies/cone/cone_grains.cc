@@ -106,7 +106,7 @@ void check_order(const char* less, double least, const char* more, double most) 
 
 }  // namespace
 
-void check_cone(const ConeSetup& s) {
+void ConeGroundwork::check(const Setup& s) {
   const ConePlan& p = s.plan;
   if (s.motion.integrator != "verlet") {
     throw std::invalid_argument(
@@ -164,18 +164,19 @@ void check_cylinder(const ConeSetup& s, double start) {
       start, rim));
 }
 
-std::vector<ShapedGrain> draw_cone(const ConePlan& plan, Random& random) {
-  return draw_sample(as_sample(plan), random);
+std::vector<ShapedGrain> ConeGroundwork::draw(const Setup& s, Random& random,
+                                              Allowance& allowance) {
+  return draw_sample(as_sample(s.plan), random, allowance);
 }
 
-EngineSettings cone_settings(const ConeSetup& s, const std::vector<ShapedGrain>& grains,
-                             int threads, double reserve) {
+EngineSettings ConeGroundwork::settings(const Setup& s, const std::vector<ShapedGrain>& grains,
+                                        double reserve) {
   const ConePlan& p = s.plan;
   std::vector<ShapedGrain> all = grains;
   if (!is_sphere(p)) all.emplace_back().axes.fill(p.radius);  // the floor's
   const GrainExtremes extremes = sample_extremes(as_sample(p), s.material.density, all);
   EngineSettings out =
-      engine_settings(s.material, s.motion, extremes, threads, false, reserve,
+      engine_settings(s.material, s.motion, extremes, 1, false, reserve,
                       is_sphere(p) ? ShapeKind::sphere : ShapeKind::superellipsoid);
   out.gravity_y = 0;
   out.gravity_z = -s.material.gravity;
@@ -196,6 +197,24 @@ EngineSettings cone_settings(const ConeSetup& s, const std::vector<ShapedGrain>&
   if (p.source == "cylinder") {
     check_countable("cone.lift_speed", filled_height(p) / p.lift_speed, out.time_step);
   }
+  return out;
+}
+
+Outlook ConeGroundwork::outlook(const Setup& s, const EngineSettings& settings) {
+  const ConePlan& p = s.plan;
+  // What only an engine refuses.
+  const std::unique_ptr<Engine> engine = make_engine(settings);
+  for (const Wall& wall : cone_walls(s, p.source == "cylinder")) engine->add_wall(wall);
+  Outlook out;
+  out.take_step(settings);
+  out.grains = p.grains;
+  out.fixed = floor_grains_of(p);
+  out.bytes = (out.grains + out.fixed) * kBytesOfSphere;
+  out.bytes_key = "cone.grains";
+  Times times;
+  times.add("cone.rate", p.grains / p.rate);
+  if (p.source == "cylinder") times.add("cone.lift_speed", filled_height(p) / p.lift_speed);
+  times.put_into(out);
   return out;
 }
 

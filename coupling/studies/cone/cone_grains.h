@@ -6,28 +6,29 @@
 
 #include "coupling/studies/cone/simulation.h"
 #include "dem/grains/grain_family.h"
-#include "dem/random/random.h"
+#include "dem/run/groundwork.h"
 
 namespace grainfield::dem {
 
 /// Fewer grains than this have no cone to speak of.
 inline constexpr int kLeastOfCone = 50;
-/// Memory of a grain, as in outlook.cc, about.
-inline constexpr double kBytesOfConeGrain = 4000;
 /// Grains start in a column as many of the largest radii high.
 inline constexpr double kColumn = 8;
 
-/// What can be judged without the grains. Throws std::invalid_argument naming the key.
-void check_cone(const ConeSetup& setup);
 /// Throws ComputationFailed naming cone.mouth when grains would start above the cylinder's rim, m.
 void check_cylinder(const ConeSetup& setup, double start);
 
-/// The grains in the order in which they are poured.
-std::vector<ShapedGrain> draw_cone(const ConePlan& plan, Random& random);
-/// Of an engine for them. `reserve`: engine_settings, where not all of them were drawn. Throws
-/// std::invalid_argument naming the key.
-EngineSettings cone_settings(const ConeSetup& setup, const std::vector<ShapedGrain>& grains,
-                             int threads, double reserve = 1);
+/// What its run starts from (Groundwork).
+struct ConeGroundwork {
+  using Setup = ConeSetup;
+  static constexpr const char* kName = "cone";
+  static void check(const Setup& setup);
+  /// In the order in which they are poured.
+  static std::vector<ShapedGrain> draw(const Setup& setup, Random& random, Allowance& allowance);
+  static EngineSettings settings(const Setup& setup, const std::vector<ShapedGrain>& grains,
+                                 double reserve);
+  static Outlook outlook(const Setup& setup, const EngineSettings& settings);
+};
 
 /// The fixed spheres of a rough floor, of the radius cone.radius in rows that let no grain through,
 /// tops at z = 0; none of a smooth one. And their number, about.

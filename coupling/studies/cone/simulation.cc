@@ -12,16 +12,12 @@
 #include <optional>
 
 #include "coupling/studies/cone/cone_grains.h"
-#include "dem/run/fingerprint.h"
-#include "dem/run/judge_draws.h"
-#include "dem/run/phases.h"
+#include "dem/run/phased_run.h"
 #include "dem/space/rotation.h"
 
 namespace grainfield::dem {
 namespace {
 
-// Grains are released, and settling and rest judged, every so many steps.
-constexpr long kCheckEvery = 200;
 // Settled: kinetic energy below this share of m g r for each grain, ...
 constexpr double kSettledShare = 1e-3;
 // ... but at most this long, s.
@@ -41,21 +37,20 @@ std::vector<PhaseInfo> phases_of(const ConePlan& plan) {
           {"rest", true, 0.75, 1},       {"done", true, 1, 1}};
 }
 
-class ConeRun final : public ArchivedRun {
+class ConeRun final : public PhasedRun<ConeGroundwork, ConePhase> {
  public:
   ConeRun(const ConeSetup& setup, std::uint64_t seed, int threads);
 
-  void advance(long steps) override;
-  bool done() const override { return phases_.done(); }
   Progress progress() const override;
   RunResult result() const override;
 
  private:
   void visit(Archive& archive) override;
-  std::string fingerprint() const override;
-  std::unique_ptr<Engine> empty_engine() const;
-  void enter(ConePhase phase);
-  void decide();
+  std::unique_ptr<Engine> empty_engine() const override;
+  double share(const Diagnostics& state) const override;
+  std::string phase_name() const override;
+  bool acts_at_once() override;
+  void decide() override;
   void pour();
   void release(int count);
   bool is_poured() const { return poured_ == setup_.plan.grains; }
@@ -70,16 +65,10 @@ class ConeRun final : public ArchivedRun {
   bool strays(double share) const;
   // Goes on without them, and without the cylinder unless `keep_cylinder`.
   void take_away(bool keep_cylinder);
-  double in_phase() const { return static_cast<double>(phases_.steps()) * settings_.time_step; }
 
-  ConeSetup setup_;
-  std::uint64_t seed_;
   Random random_;
   std::vector<ShapedGrain> grains_;  // drawn before anything moves
   double mean_mass_ = 0, largest_ = 0;
-  EngineSettings settings_;
-  std::unique_ptr<Engine> engine_;
-  Phases<ConePhase> phases_;
   int poured_ = 0, lost_ = 0;
   bool cylinder_ = false;  // whether it stands
   double top_ = 0;         // of the grains that lie; while it is lifted: within the cylinder, m
@@ -92,17 +81,17 @@ class ConeRun final : public ArchivedRun {
 };
 
 ConeRun::ConeRun(const ConeSetup& setup, std::uint64_t seed, int threads)
-    : setup_(setup), seed_(seed), random_(seed), phases_(phases_of(setup.plan)) {
-  check_cone(setup_);
-  grains_ = draw_cone(setup_.plan, random_);
+    : PhasedRun(setup, seed, phases_of(setup.plan)),
+      random_(seed),
+      grains_(draw_all<ConeGroundwork>(setup_, random_)) {
   for (const ShapedGrain& g : grains_) {
     mean_mass_ += setup_.material.density * g.area / static_cast<double>(grains_.size());
     largest_ = std::max(largest_, g.radius);
   }
-  settings_ = cone_settings(setup_, grains_, threads);
+  take_settings(grains_, threads);
   cylinder_ = setup_.plan.source == "cylinder";
   engine_ = empty_engine();
-  for (const NewGrain& g : cone_floor(setup_.plan, setup_.material.density)) engine_->add(g);
+  add(cone_floor(setup_.plan, setup_.material.density));
   enter(ConePhase::pour);
 }
 
@@ -112,17 +101,10 @@ std::unique_ptr<Engine> ConeRun::empty_engine() const {
   return engine;
 }
 
-void ConeRun::enter(ConePhase phase) {
-  phases_.enter(phase);
-  engine_->set_background_damping(phases_.info().damped ? setup_.rest.background_damping : 0);
-}
-
-void ConeRun::advance(long steps) {
-  while (steps > 0 && !done()) {
-    if (phases_.now() == ConePhase::pour && phases_.steps() == 0 && poured_ == 0) pour();
-    steps -= phases_.step(*engine_, steps, kCheckEvery);
-    if (phases_.is_due(kCheckEvery)) decide();
-  }
+// The first grains.
+bool ConeRun::acts_at_once() {
+  if (phases_.now() == ConePhase::pour && phases_.steps() == 0 && poured_ == 0) pour();
+  return false;
 }
 
 void ConeRun::decide() {
@@ -239,20 +221,17 @@ void ConeRun::settle() {
 
 void ConeRun::rest() {
   const Diagnostics d = engine_->measure();
-  if (at_rest(d, setup_.rest) && strays(0)) {
+  if (!has_come_to_rest(d, "after the pour", smaller_step(setup_.motion))) return;
+  if (strays(0)) {
     take_away(false);
     check_enough();
-    phases_.restart();
-  } else if (at_rest(d, setup_.rest)) {
-    at_rest_ = d;
-    pile_ = named_snapshot(*engine_, "pile", seed_,
-                           {{"source", setup_.plan.source},
-                            {"shape", setup_.plan.shape},
-                            {"floor", setup_.plan.floor}});
-    phases_.enter(ConePhase::done);
-  } else if (in_phase() > setup_.rest.max_time) {
-    fail_to_rest(d, setup_.rest, "after the pour", smaller_step(setup_.motion));
+    return phases_.restart();
   }
+  at_rest_ = d;
+  pile_ = named_snapshot(
+      *engine_, "pile", seed_,
+      {{"source", setup_.plan.source}, {"shape", setup_.plan.shape}, {"floor", setup_.plan.floor}});
+  phases_.enter(ConePhase::done);
 }
 
 void ConeRun::check_enough() const {
@@ -280,31 +259,33 @@ void ConeRun::take_away(bool keep_cylinder) {
   steps_before_ += engine_->steps();
   engine_ = make_engine(settings_, s);
   if (phases_.now() == ConePhase::rest) engine_->set_sleep(false);
-  engine_->set_background_damping(phases_.info().damped ? setup_.rest.background_damping : 0);
+  damp();
   lost_ += before - engine_->grains();
 }
 
 Progress ConeRun::progress() const {
-  const Diagnostics d = engine_->measure();
-  Progress p = progress_of(*engine_, d);
+  Progress p = PhasedRun::progress();
   p.steps += steps_before_;
   p.simulated_time = static_cast<double>(p.steps) * settings_.time_step;
-  p.phase = phases_.info().name;
-  double share = 1;
-  if (phases_.now() == ConePhase::pour) {
-    p.phase = fmt::format("pour {}/{}", poured_, setup_.plan.grains);
-    share = static_cast<double>(poured_) / setup_.plan.grains;
-  } else if (phases_.now() == ConePhase::lift) {
-    share = setup_.plan.lift_speed * in_phase() / std::max(top_, 1e-300);
-  } else if (phases_.now() == ConePhase::rest) {
-    share = rest_progress(d, setup_.rest);
-  }
-  p.fraction = done() ? 1 : phases_.fraction(share);
   return p;
 }
 
-std::string ConeRun::fingerprint() const {
-  return fmt::format("cone {} {} {}", fingerprint_of(setup_), settings_.time_step, seed_);
+std::string ConeRun::phase_name() const {
+  return phases_.now() == ConePhase::pour ? fmt::format("pour {}/{}", poured_, setup_.plan.grains)
+                                          : PhasedRun::phase_name();
+}
+
+double ConeRun::share(const Diagnostics& state) const {
+  switch (phases_.now()) {
+    case ConePhase::pour:
+      return static_cast<double>(poured_) / setup_.plan.grains;
+    case ConePhase::lift:
+      return setup_.plan.lift_speed * in_phase() / std::max(top_, 1e-300);
+    case ConePhase::rest:
+      return rest_progress(state, setup_.rest);
+    default:
+      return 1;
+  }
 }
 
 void ConeRun::visit(Archive& archive) {
@@ -321,7 +302,7 @@ void ConeRun::visit(Archive& archive) {
   archive(steps_before_);
   archive(at_rest_);
   archive(random_);
-  archive.engine(engine_, [this] { return empty_engine(); });
+  visit_engine(archive);
   archive.snapshot(pile_, "pile");
   archive.require(pile_.has_value() == done());
 }
@@ -341,43 +322,9 @@ RunResult ConeRun::result() const {
 
 }  // namespace
 
-Outlook foresee_cone(const ConeSetup& s, const std::vector<std::uint64_t>& seeds,
+Outlook foresee_cone(const ConeSetup& setup, const std::vector<std::uint64_t>& seeds,
                      std::int64_t draws) {
-  check_cone(s);
-  const ConePlan& p = s.plan;
-  Outlook out;
-  const auto judge = [&](const std::vector<ShapedGrain>& grains, double reserve) {
-    const EngineSettings settings = cone_settings(s, grains, 1, reserve);
-    if (out.time_step > 0) return;
-    out.take_step(settings);
-    // What only an engine refuses.
-    const std::unique_ptr<Engine> engine = make_engine(settings);
-    for (const Wall& wall : cone_walls(s, p.source == "cylinder")) engine->add_wall(wall);
-  };
-  // The extremes of spheres are known; superellipsoids are drawn, as many as allowed.
-  if (p.shape == "sphere") {
-    judge({}, 1);
-  } else {
-    ConePlan some = p;
-    const auto draw = [&](Random& random, std::int64_t& left) {
-      some.grains = static_cast<int>(std::min<std::int64_t>(left, p.grains));
-      left -= some.grains;
-      return draw_cone(some, random);
-    };
-    judge_draws(seeds, draws, draw, judge);
-  }
-  out.grains = p.grains;
-  out.fixed = floor_grains_of(p);
-  out.bytes = (out.grains + out.fixed) * kBytesOfConeGrain;
-  out.bytes_key = "cone.grains";
-  out.time = p.grains / p.rate;
-  out.time_key = "cone.rate";
-  if (p.source == "cylinder") {
-    const double lift = filled_height(p) / p.lift_speed;
-    if (lift > out.time) out.time_key = "cone.lift_speed";
-    out.time += lift;
-  }
-  return out;
+  return foresee<ConeGroundwork>(setup, seeds, draws);
 }
 
 std::unique_ptr<Run> make_cone_run(const ConeSetup& setup, std::uint64_t seed, int threads) {

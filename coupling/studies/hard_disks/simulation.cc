@@ -296,7 +296,6 @@ class HardParticlesRun final : public ArchivedRun {
       if (archive.is_reading()) archive.require(engine_->settle());
     }
   }
-
   HardParticlesSetup setup_;
   std::uint64_t seed_;
   Random random_;

@@ -10,9 +10,7 @@
 #include <numeric>
 
 #include "dem/random/random.h"
-#include "dem/run/archive.h"
-#include "dem/run/fingerprint.h"
-#include "dem/run/soft_snapshot.h"
+#include "dem/run/soft_run.h"
 #include "dem/snapshot/contact_changes.h"
 #include "dem/switching/switching_disks.h"
 
@@ -29,11 +27,11 @@ double HardToSoftSetup::width() const { return 2.2 * radius * (1 + polydispersit
 
 namespace {
 
-constexpr long kJudgeSoftEvery = 20;
 constexpr double kBytesOfSwitchingDisk = 9000;
 constexpr std::array<int, 3> kShown{25, 50, 75};  // %
 
-using SwitchRecord = std::array<double, std::size(kSwitchColumns)>;
+// The column of the energies' sum.
+constexpr std::size_t kSumOfEnergies = 6;
 
 SwitchScene switch_scene(const HardToSoftSetup& s) {
   SwitchScene out;
@@ -79,67 +77,27 @@ ImplicitSettings switch_steps(const HardToSoftSetup& s) {
   return out;
 }
 
-class HardToSoftRun final : public ArchivedRun {
+using SwitchBase = SoftRun<HardToSoftSetup, SwitchingDisks, std::size(kSwitchColumns)>;
+
+class HardToSoftRun final : public SwitchBase {
  public:
   HardToSoftRun(const HardToSoftSetup& setup, std::uint64_t seed)
-      : setup_(setup),
-        seed_(seed),
-        disks_(switch_scene(setup), rain_of(setup, seed), switch_steps(setup)) {
+      : SoftRun(setup, seed, {switch_scene(setup), rain_of(setup, seed), switch_steps(setup)},
+                "switch.step") {
     start_ = disks_.balance();
-    last_step_ = std::max(1L, std::lround(setup.max_time * setup.time_unit() / setup.time_step()));
-    every_ = std::max(1L, last_step_ / setup.records);
     record();
   }
 
-  void advance(long steps) override {
-    try {
-      for (; steps > 0 && !done_; --steps) {
-        disks_.step(1);
-        keep();
-        const long now = disks_.implicit_tally().steps;
-        if (now % every_ == 0) record();
-        const bool rests =
-            now % kJudgeSoftEvery == 0 && share() > 0.5 && disks_.rest().ratio < setup_.rest;
-        if (!rests && now < last_step_) continue;
-        if (now % every_ != 0) record();
-        at_rest_ = rests;
-        done_ = true;
-      }
-    } catch (const ComputationFailed& e) {
-      throw ComputationFailed(fmt::format("{} (switch.step)", e.what()));
-    }
-  }
-  bool done() const override { return done_; }
-  Progress progress() const override {
-    Progress p;
-    p.phase = done_ ? "done" : fmt::format("rain, {:.0f} % soft", 100 * share());
-    p.fraction = done_ ? 1 : static_cast<double>(disks_.implicit_tally().steps) / last_step_;
-    p.simulated_time = disks_.time();
-    p.steps = disks_.implicit_tally().steps;
-    p.grains = p.awake = static_cast<int>(disks_.bodies().size());
-    p.kinetic_energy = disks_.energy().kinetic;
-    p.unbalanced_force_ratio = disks_.rest().ratio;
-    return p;
-  }
   RunResult result() const override {
     RunResult out;
-    const ImplicitTally& t = disks_.implicit_tally();
     const SwitchTally& s = disks_.tally();
     const Snapshot pile = snapshot("pile");
-    double most = 0, weight = 0;
-    for (const SwitchRecord& r : records_) most = std::max(most, std::fabs(r[6]));
+    double carried = 0, weight = 0;
     for (const Grain& g : pile.grains) weight += g.mass * setup_.gravity;
-    auto& f = out.figures;
-    f["dem.grains"] = static_cast<double>(disks_.bodies().size());
-    f["dem.contacts"] = static_cast<double>(pile.contacts.size());
-    f["dem.steps"] = static_cast<double>(t.steps);
-    f["dem.time_step"] = setup_.time_step();
-    f["dem.unbalanced_force_ratio"] = disks_.rest().ratio;
-    double carried = 0;
     for (const Wall& w : pile.walls) carried -= w.force.y();
+    auto& f = out.figures;
+    add_soft_figures("switch", pile, kSumOfEnergies, f);
     f["base.weight_ratio"] = carried / weight;
-    f["switch.at_rest"] = at_rest_ ? 1 : 0;
-    f["switch.time"] = disks_.time() / setup_.time_unit();
     f["switch.soft_share"] = share();
     f["switch.collisions"] = static_cast<double>(s.collisions);
     f["switch.to_soft"] = static_cast<double>(s.to_soft);
@@ -148,9 +106,6 @@ class HardToSoftRun final : public ArchivedRun {
     f["switch.lost_impulses"] = s.lost / unit();
     f["switch.lost_soft"] = disks_.losses().total() / unit();
     f["switch.switched"] = s.switched / unit();
-    f["switch.balance_error"] = most;
-    f["switch.iterations"] = static_cast<double>(t.iterations) / static_cast<double>(t.solves);
-    f["switch.halved"] = static_cast<double>(t.halved);
     for (std::size_t k = 0; k < kShown.size(); ++k) {
       if (shown_[k]) out.snapshots.emplace_back(fmt::format("soft_{}", kShown[k]), *shown_[k]);
     }
@@ -159,6 +114,14 @@ class HardToSoftRun final : public ArchivedRun {
   }
 
  private:
+  bool step() override {
+    disks_.step(1);
+    keep();
+    return true;
+  }
+  bool may_rest() const override { return share() > 0.5; }
+  const ImplicitTally& tally() const override { return disks_.implicit_tally(); }
+  std::string phase() const override { return fmt::format("rain, {:.0f} % soft", 100 * share()); }
   double unit() const { return setup_.weight() * 2 * setup_.radius; }
   double share() const {
     const std::vector<char>& soft = disks_.soft();
@@ -171,7 +134,7 @@ class HardToSoftRun final : public ArchivedRun {
       shown_[k] = snapshot(fmt::format("soft_{}", kShown[k]));
     }
   }
-  void record() {
+  void record() override {
     const SoftEnergy e = disks_.energy();
     records_.push_back({disks_.time() / setup_.time_unit(), share(), e.kinetic / unit(),
                         (e.elastic + e.springs) / unit(), disks_.tally().lost / unit(),
@@ -179,10 +142,7 @@ class HardToSoftRun final : public ArchivedRun {
   }
 
   Snapshot snapshot(const std::string& state) const {
-    Snapshot out;
-    out.time = disks_.time();
-    out.gravity = {0, -setup_.gravity, 0};
-    out.grains = grains_of(disks_.bodies(), disks_.angles());
+    Snapshot out = bare_snapshot(state, "rain");
     const std::vector<char>& soft = disks_.soft();
     const double half = 0.5 * setup_.width();
     const auto wall = [](const char* name, const Vec3& point, const Vec3& normal) {
@@ -200,9 +160,6 @@ class HardToSoftRun final : public ArchivedRun {
       if (t.j < 0) out.walls[static_cast<std::size_t>(-1 - t.j)].force -= c.force;
       out.contacts.push_back(c);
     }
-    out.attributes["state"] = state;
-    out.attributes["seed"] = fmt::format("{}", seed_);
-    out.attributes["packing"] = "rain";
     out.tables["soft"] = {{"grains", "1", {soft.begin(), soft.end()}}};
     keep_columns("switch", kSwitchColumns, records_, out);
     return out;
@@ -212,26 +169,15 @@ class HardToSoftRun final : public ArchivedRun {
     return fmt::format("hard to soft {} {}", fingerprint_of(setup_), seed_);
   }
   void visit(Archive& archive) override {
-    std::string checkpoint = archive.is_reading() ? std::string() : disks_.checkpoint();
-    archive(checkpoint);
-    archive(records_);
-    archive(at_rest_);
-    archive(done_);
+    visit_disks(archive);
+    visit_end(archive);
     for (std::size_t k = 0; k < kShown.size(); ++k) {
       archive.snapshot(shown_[k], fmt::format("soft_{}", kShown[k]));
     }
-    archive.require(!records_.empty());
-    if (archive.is_reading()) disks_.restore(checkpoint);
   }
 
-  HardToSoftSetup setup_;
-  std::uint64_t seed_;
-  SwitchingDisks disks_;
   double start_ = 0;  // energy, J
-  long last_step_ = 1, every_ = 1;
-  std::vector<SwitchRecord> records_;
   std::array<std::optional<Snapshot>, kShown.size()> shown_;
-  bool at_rest_ = false, done_ = false;
 };
 
 }  // namespace

@@ -9,9 +9,7 @@
 
 #include "dem/implicit/soft_disks.h"
 #include "dem/laws/contact.h"
-#include "dem/run/archive.h"
-#include "dem/run/fingerprint.h"
-#include "dem/run/soft_snapshot.h"
+#include "dem/run/soft_run.h"
 #include "dem/snapshot/contact_changes.h"
 
 namespace grainfield::dem {
@@ -30,17 +28,13 @@ double ImplicitSettlingSetup::time_unit() const { return std::sqrt(2 * lattice.r
 
 namespace {
 
-// Rest is judged every so many steps.
-constexpr long kJudgeEvery = 20;
-// Bytes of a disk with its contacts and their part of the factors, about.
+// Of a disk with its contacts and their part of the factors: about.
 constexpr double kBytesOfSoftDisk = 8000;
 // A contact whose normal rises less than this is one of a row.
 constexpr double kRise = 0.5;
 
 // Columns.
 constexpr std::size_t kUnbalanced = 7, kSpread = 9;
-
-using SettlingRecord = std::array<double, std::size(kSettlingColumns)>;
 
 SoftScene settling_scene(const ImplicitSettlingSetup& s) {
   const double dashpot = std::sqrt(s.mass() * s.stiffness());
@@ -85,68 +79,26 @@ ImplicitSettings settling_steps(const ImplicitSettlingSetup& s) {
   return out;
 }
 
-class ImplicitSettlingRun final : public ArchivedRun {
+using SettlingBase = SoftRun<ImplicitSettlingSetup, SoftDisks, std::size(kSettlingColumns)>;
+
+class ImplicitSettlingRun final : public SettlingBase {
  public:
   ImplicitSettlingRun(const ImplicitSettlingSetup& setup, std::uint64_t seed)
-      : setup_(setup),
-        seed_(seed),
-        disks_(settling_scene(setup), settling_disks(setup), settling_steps(setup)) {
+      : SoftRun(setup, seed, {settling_scene(setup), settling_disks(setup), settling_steps(setup)},
+                "settling.step, settling.max_iterations") {
     start_ = disks_.energy().total();
     base_ = setup.lattice.base_grains;
-    last_step_ = std::max(1L, std::lround(setup.max_time * setup.time_unit() / setup.time_step()));
-    every_ = std::max(1L, last_step_ / setup.records);
     record();
   }
 
-  void advance(long steps) override {
-    try {
-      // A step that is halved again and again counts by its parts, so that this returns in time.
-      for (; steps > 0 && !done_; --steps) {
-        if (!disks_.try_part()) continue;
-        const long now = disks_.tally().steps;
-        if (now % every_ == 0) record();
-        const bool rests = now % kJudgeEvery == 0 && disks_.rest().ratio < setup_.rest;
-        if (!rests && now < last_step_) continue;
-        if (now % every_ != 0) record();
-        at_rest_ = rests;
-        done_ = true;
-      }
-    } catch (const ComputationFailed& e) {
-      throw ComputationFailed(fmt::format("{} (settling.step, settling.max_iterations)", e.what()));
-    }
-  }
-  bool done() const override { return done_; }
-  Progress progress() const override {
-    Progress p;
-    p.phase = done_ ? "done" : "settle";
-    p.fraction = done_ ? 1 : disks_.time() / (last_step_ * setup_.time_step());
-    p.simulated_time = disks_.time();
-    p.steps = disks_.tally().steps;
-    p.grains = p.awake = static_cast<int>(disks_.bodies().size());
-    p.kinetic_energy = disks_.energy().kinetic;
-    p.unbalanced_force_ratio = disks_.rest().ratio;
-    return p;
-  }
   RunResult result() const override {
     RunResult out;
-    const ImplicitTally& t = disks_.tally();
     const Snapshot pile = snapshot();
-    double most = 0;
-    for (const SettlingRecord& r : records_) most = std::max(most, std::fabs(r[kUnbalanced]));
     auto& f = out.figures;
-    f["dem.grains"] = static_cast<double>(disks_.bodies().size());
-    f["dem.contacts"] = static_cast<double>(pile.contacts.size());
-    f["dem.steps"] = static_cast<double>(t.steps);
-    f["dem.time_step"] = setup_.time_step();
-    f["dem.unbalanced_force_ratio"] = disks_.rest().ratio;
+    add_soft_figures("settling", pile, kUnbalanced, f);
     f["base.weight_ratio"] =
         base_force(pile).y() / (static_cast<double>(disks_.bodies().size()) * setup_.weight());
-    f["settling.at_rest"] = at_rest_ ? 1 : 0;
-    f["settling.time"] = disks_.time() / setup_.time_unit();
-    f["settling.iterations"] = static_cast<double>(t.iterations) / static_cast<double>(t.solves);
-    f["settling.most_iterations"] = t.most_iterations;
-    f["settling.halved"] = static_cast<double>(t.halved);
-    f["settling.balance_error"] = most;
+    f["settling.most_iterations"] = tally().most_iterations;
     f["settling.spread"] = records_.back()[kSpread];
     f["settling.spread_speed"] = at_rest_ ? 0 : last_speed();
     double rows = 0;
@@ -157,8 +109,12 @@ class ImplicitSettlingRun final : public ArchivedRun {
   }
 
  private:
+  // A step that is halved again and again counts by its parts, so that advance() returns in time.
+  bool step() override { return disks_.try_part(); }
+  const ImplicitTally& tally() const override { return disks_.tally(); }
+  std::string phase() const override { return "settle"; }
   double unit() const { return setup_.weight() * 2 * setup_.lattice.radius; }
-  void record() {
+  void record() override {
     const SoftEnergy e = disks_.energy();
     const SoftLosses& lost = disks_.losses();
     const ImplicitTally& t = disks_.tally();
@@ -176,15 +132,12 @@ class ImplicitSettlingRun final : public ArchivedRun {
   /// d/sqrt(d/g), of the last tenth of the records.
   double last_speed() const {
     const std::size_t n = records_.size(), from = n - 1 - std::max<std::size_t>(1, n / 10);
-    const SettlingRecord &a = records_[n > 1 ? from : 0], &b = records_.back();
+    const auto &a = records_[n > 1 ? from : 0], &b = records_.back();
     return b[0] > a[0] ? (b[kSpread] - a[kSpread]) / (b[0] - a[0]) : 0;
   }
 
   Snapshot snapshot() const {
-    Snapshot out;
-    out.time = disks_.time();
-    out.gravity = {0, -setup_.gravity, 0};
-    out.grains = grains_of(disks_.bodies(), disks_.angles());
+    Snapshot out = bare_snapshot("pile", "lattice");
     Wall floor;
     floor.name = "floor";
     for (const SoftTouch& t : disks_.touches()) {
@@ -198,9 +151,6 @@ class ImplicitSettlingRun final : public ArchivedRun {
       out.contacts.push_back(c);
     }
     out.walls = {floor};
-    out.attributes["state"] = "pile";
-    out.attributes["seed"] = fmt::format("{}", seed_);
-    out.attributes["packing"] = "lattice";
     keep_columns("settling", kSettlingColumns, records_, out);
     return out;
   }
@@ -209,26 +159,15 @@ class ImplicitSettlingRun final : public ArchivedRun {
     return fmt::format("implicit settling {} {}", fingerprint_of(setup_), seed_);
   }
   void visit(Archive& archive) override {
-    std::string checkpoint = archive.is_reading() ? std::string() : disks_.checkpoint();
-    archive(checkpoint);
-    archive(records_);
+    visit_disks(archive);
     archive(solves_);
     archive(iterations_);
-    archive(at_rest_);
-    archive(done_);
-    archive.require(!records_.empty());
-    if (archive.is_reading()) disks_.restore(checkpoint);
+    visit_end(archive);
   }
 
-  ImplicitSettlingSetup setup_;
-  std::uint64_t seed_;
-  SoftDisks disks_;
   double start_ = 0;  // energy, J
   int base_ = 0;
-  long last_step_ = 1, every_ = 1;
-  std::vector<SettlingRecord> records_;
   long solves_ = 0, iterations_ = 0;  // at the last record
-  bool at_rest_ = false, done_ = false;
 };
 
 void check_settling(const ImplicitSettlingSetup& s) {

@@ -15,7 +15,8 @@ struct ExpectedHeap {
 };
 ExpectedHeap expected_heap(double grain_area);
 
-/// Settings that can be judged without the grains. Throws std::invalid_argument naming the key.
+/// Settings that can be judged without the grains, each within the range of its key (keys.cc).
+/// Throws std::invalid_argument naming the key.
 void check_pile(const PileSetup& setup);
 /// The source and the floor against the grains that were drawn (their largest radius, m, and the
 /// area of all, m2): pour rate, height of the mouth,

@@ -52,10 +52,10 @@ void PileRun::release_grain() {
   f.grain = poured_;
   // Between plates anywhere, else near the axis.
   const bool funnel = setup_.source.opening > 0;
-  const double half_width = funnel ? funnel_room(setup_.source, grains_[poured_].radius)
+  const double half_width = funnel ? funnel_room(setup_.source, drawn_.poured[poured_].radius)
                                    : setup_.source.spread * 0.5 * mean_diameter_;
   f.x = point_->axis(poured_) + half_width * random_.uniform(-1, 1);
-  const double near = top_ + kEntryMargin * mean_diameter_ + grains_[poured_].radius;
+  const double near = top_ + kEntryMargin * mean_diameter_ + drawn_.poured[poured_].radius;
   const double entry = funnel ? point_->start_height() : near;
   f.step = setup_.source.above > 0 ? phases_.steps() : point_->arrival_step(poured_, entry);
   // One after the other, and not before those that are to join at this very step.
@@ -67,7 +67,7 @@ void PileRun::release_grain() {
 
 // False when another grain is there.
 bool PileRun::join(const Flight& f) {
-  const ShapedGrain& shaped = grains_[f.grain];
+  const ShapedGrain& shaped = drawn_.poured[f.grain];
   NewGrain g = shaped.at(f.x, 0, setup_.material.density);
   // Between plates it waits at the top for its turn; free flight goes on.
   const bool waits = setup_.source.opening > 0;
@@ -135,9 +135,9 @@ void PileRun::drop_layer() {
   }
   std::vector<ShapedGrain> layer;
   double room = line_.length();
-  while (poured_ < setup_.source.grains && 2 * grains_[poured_].radius <= room) {
-    room -= 2 * grains_[poured_].radius;
-    layer.push_back(grains_[poured_++]);
+  while (poured_ < setup_.source.grains && 2 * drawn_.poured[poured_].radius <= room) {
+    room -= 2 * drawn_.poured[poured_].radius;
+    layer.push_back(drawn_.poured[poured_++]);
   }
   for (NewGrain g :
        side_by_side(layer, line_.left, line_.right, bottom, setup_.material.density, random_)) {

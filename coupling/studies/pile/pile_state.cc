@@ -3,47 +3,33 @@
 
 #include "coupling/studies/pile/pile_figures.h"
 #include "coupling/studies/pile/poured_run.h"
-#include "dem/run/fingerprint.h"
 
 namespace grainfield::dem {
 
-Snapshot PileRun::named(Snapshot s, const std::string& state) const {
-  s.attributes["state"] = state;
-  s.attributes["seed"] = fmt::format("{}", seed_);
-  s.attributes["source"] = setup_.source.kind;
-  s.attributes["shape"] = setup_.shape.kind;
-  s.attributes["floor"] = setup_.floor.kind;
-  return s;
+const Engine& PileRun::at_work() const {
+  return changes_->engine() != nullptr ? *changes_->engine() : *engine_;
 }
 
-Progress PileRun::progress() const {
-  const Engine& at_work = changes_->engine() != nullptr ? *changes_->engine() : *engine_;
-  const Diagnostics d = at_work.measure();
-  Progress p = progress_of(at_work, d);
-  p.grains = engine_->grains();
-  p.phase = phases_.info().name;
+std::string PileRun::phase_name() const {
+  if (phases_.now() == PilePhase::pour) {
+    return fmt::format("pour {}/{}", poured_, setup_.source.grains);
+  }
+  return phases_.now() == PilePhase::change ? changes_->phase() : PhasedRun::phase_name();
+}
+
+double PileRun::share(const Diagnostics& state) const {
   switch (phases_.now()) {
     case PilePhase::pour:
-      p.phase = fmt::format("pour {}/{}", poured_, setup_.source.grains);
-      p.fraction = phases_.fraction(static_cast<double>(poured_) / setup_.source.grains);
-      break;
+      return static_cast<double>(poured_) / setup_.source.grains;
     case PilePhase::rest:
-      p.fraction = phases_.fraction(rest_progress(d, setup_.rest));
-      break;
+      return rest_progress(state, setup_.rest);
     case PilePhase::change:
-      p.phase = changes_->phase();
-      p.fraction = phases_.fraction(changes_->fraction());
-      break;
+      return changes_->fraction();
     case PilePhase::settle:
     case PilePhase::done:
-      p.fraction = phases_.fraction(1);
       break;
   }
-  return p;
-}
-
-std::string PileRun::fingerprint() const {
-  return fmt::format("pile {} {} {}", fingerprint_of(setup_), settings_.time_step, seed_);
+  return 1;
 }
 
 void PileRun::visit(Archive& archive) {
@@ -62,7 +48,7 @@ void PileRun::visit(Archive& archive) {
   archive(pour_time_);
   archive(at_pile_);
   archive(random_);
-  archive.engine(engine_, [this] { return empty_engine(); });
+  visit_engine(archive);
   archive.snapshot(poured_pile_, "poured");
   archive.require(poured_pile_.has_value() == (phases_.now() > PilePhase::settle));
   archive.snapshot(pile_, "pile");

@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "coupling/studies/pile/gravity_changes.h"
-#include "coupling/studies/pile/simulation.h"
-#include "dem/grains/grain_family.h"
+#include "coupling/studies/pile/pile_groundwork.h"
 #include "dem/pouring/source.h"
-#include "dem/random/random.h"
-#include "dem/run/phases.h"
+#include "dem/run/phased_run.h"
 
 namespace grainfield::dem {
 
@@ -23,13 +21,11 @@ inline constexpr long kSampleEvery = 3000;
 
 enum class PilePhase : int { pour, settle, rest, change, done };
 
-class PileRun final : public ArchivedRun {
+class PileRun final : public PhasedRun<PileGroundwork, PilePhase> {
  public:
   PileRun(const PileSetup& setup, std::uint64_t seed, int threads);
 
   void advance(long steps) override;
-  bool done() const override { return phases_.done(); }
-  Progress progress() const override;
   RunResult result() const override;
 
   /// No grain sleeps from now on: what sleeping saves is measured so.
@@ -46,12 +42,13 @@ class PileRun final : public ArchivedRun {
   };
 
   void visit(Archive& archive) override;
-  void draw();
-  std::unique_ptr<Engine> empty_engine() const;
+  std::unique_ptr<Engine> empty_engine() const override;
+  const Engine& at_work() const override;
+  double share(const Diagnostics& state) const override;
+  std::string phase_name() const override;
   void add_floor_grains();
-  void enter(PilePhase phase);
   long next_event() const;
-  void act();
+  void decide() override;
   void pour_point();
   void pour_line();
   void release_grain();
@@ -62,20 +59,11 @@ class PileRun final : public ArchivedRun {
   void rest();
   void change(long steps);
   bool settled(int grains) const;
-  double in_phase() const { return static_cast<double>(phases_.steps()) * engine_->time_step(); }
-  Snapshot named(Snapshot snapshot, const std::string& state) const;
-  std::string fingerprint() const override;
 
-  PileSetup setup_;
-  std::uint64_t seed_;
   Random random_;
-  std::vector<ShapedGrain> grains_, floor_;  // drawn before anything moves
+  PileGrains drawn_;  // before anything moves
   double largest_diameter_ = 0, mean_diameter_ = 0;
-  EngineSettings settings_;
   std::optional<PointSource> point_;
-  std::unique_ptr<Engine> engine_;
-
-  Phases<PilePhase> phases_;
   int poured_ = 0;  // released by the point source, dropped by the line source
   double top_ = 0;  // of the grains at rest when the last one joined, m
   std::deque<Flight> in_flight_;

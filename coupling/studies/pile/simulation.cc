@@ -12,8 +12,6 @@
 namespace grainfield::dem {
 namespace {
 
-// Rest and settling are judged every so many steps, counted within a phase.
-constexpr long kCheckEvery = 200;
 // Settled: mean kinetic energy of the grains that moved last below this share of m g r.
 constexpr double kSettledShare = 0.01;
 
@@ -30,54 +28,30 @@ std::vector<PhaseInfo> phases_of(const PileSetup& setup) {
 }  // namespace
 
 PileRun::PileRun(const PileSetup& setup, std::uint64_t seed, int threads)
-    : setup_(setup), seed_(seed), random_(seed), phases_(phases_of(setup)) {
-  check_pile(setup_);
-  draw();
-  std::vector<ShapedGrain> all = grains_;
-  all.insert(all.end(), floor_.begin(), floor_.end());
-  settings_ =
-      engine_settings(setup_.material, setup_.motion, extremes_of(all, setup_.material.density),
-                      threads, setup_.shape.kind == "rand1" || setup_.shape.kind == "irregular");
-  check_background_damping(setup_.rest, settings_.time_step);
-  check_source(setup_, largest_radius(grains_), total_area(grains_));
+    : PhasedRun(setup, seed, phases_of(setup)),
+      random_(seed),
+      drawn_(draw_all<PileGroundwork>(setup_, random_)),
+      largest_diameter_(2 * largest_radius(drawn_.poured)),
+      mean_diameter_(2 * mean_radius(drawn_.poured)) {
+  take_settings(drawn_, threads);
   const SourceSetup& o = setup_.source;
   if (o.kind == "point") {
     const double fall = least_interval(o.speed, setup_.material.gravity, o.height);
     check_countable("source.interval", o.grains * o.interval + fall, settings_.time_step);
   }
-  settings_.shape = (setup_.shape.kind != "disk" || setup_.source.opening > 0) ? ShapeKind::polygon
-                                                                               : ShapeKind::disk;
-  settings_.sleep = setup_.sleep;
   engine_ = empty_engine();
   add_floor_grains();
-  for (const NewGrain& plate : funnel_plates(setup_.source, setup_.material.density)) {
-    engine_->add(plate);
-  }
+  add(funnel_plates(setup_.source, setup_.material.density));
   point_.emplace(setup_.source, setup_.material.gravity, settings_.time_step);
   line_ = {-0.5 * setup_.source.length, 0.5 * setup_.source.length};
   changes_.emplace(setup_.change, setup_.rest, settings_, smaller_step(setup_.motion));
-}
-
-void PileRun::draw() {
-  for (int k = 0; k < setup_.source.grains; ++k) {
-    grains_.push_back(draw_grain(setup_.shape, random_));
-  }
-  largest_diameter_ = 2 * largest_radius(grains_);
-  mean_diameter_ = 2 * mean_radius(grains_);
-  if (setup_.floor.kind != "rough") return;
-  for (double room = setup_.floor.length;;) {
-    const ShapedGrain next = draw_grain(setup_.shape, random_);
-    room -= 2 * next.radius;
-    if (room < 0) return;
-    floor_.push_back(next);
-  }
 }
 
 std::unique_ptr<Engine> PileRun::empty_engine() const {
   std::unique_ptr<Engine> engine = make_engine(settings_);
   const double half = 0.5 * setup_.floor.length;
   // Below a rough floor's grains the plane is out of reach.
-  const double depth = floor_.empty() ? 0 : 4 * largest_radius(floor_);
+  const double depth = drawn_.floor.empty() ? 0 : 4 * largest_radius(drawn_.floor);
   const MaterialSetup& m = setup_.material;
   engine->add_wall({"floor", Vec3(0, -depth, 0), Vec3(0, 1, 0), m.floor_friction});
   engine->add_wall({"left", Vec3(-half, 0, 0), Vec3(1, 0, 0), m.wall_friction});
@@ -89,20 +63,15 @@ void PileRun::add_floor_grains() {
   // Side by side, their bounding circles' tops at y = 0, the rest of the length as equal gaps.
   const double half = 0.5 * setup_.floor.length;
   double slack = setup_.floor.length;
-  for (const ShapedGrain& g : floor_) slack -= 2 * g.radius;
-  const double gap = floor_.empty() ? 0 : slack / static_cast<double>(floor_.size());
+  for (const ShapedGrain& g : drawn_.floor) slack -= 2 * g.radius;
+  const double gap = drawn_.floor.empty() ? 0 : slack / static_cast<double>(drawn_.floor.size());
   double x = -half;
-  for (const ShapedGrain& shaped : floor_) {
+  for (const ShapedGrain& shaped : drawn_.floor) {
     NewGrain g = shaped.at(x + 0.5 * gap + shaped.radius, -shaped.radius, setup_.material.density);
     g.fixed = true;
     engine_->add(g);
     x += 2 * shaped.radius + gap;
   }
-}
-
-void PileRun::enter(PilePhase phase) {
-  phases_.enter(phase);
-  engine_->set_background_damping(phases_.info().damped ? setup_.rest.background_damping : 0);
 }
 
 void PileRun::advance(long steps) {
@@ -119,11 +88,11 @@ void PileRun::advance(long steps) {
       phases_.advance(chunk);
       steps -= chunk;
     }
-    if (phases_.steps() >= next) act();
+    if (phases_.steps() >= next) decide();
   }
 }
 
-// The step, within the phase, at which something is decided. act() moves it on.
+// The step, within the phase, at which something is decided. decide() moves it on.
 long PileRun::next_event() const {
   const bool pours = phases_.now() == PilePhase::pour;
   if (!pours || setup_.source.kind == "line") {
@@ -136,7 +105,7 @@ long PileRun::next_event() const {
   return next;
 }
 
-void PileRun::act() {
+void PileRun::decide() {
   switch (phases_.now()) {
     case PilePhase::pour:
       return setup_.source.kind == "line" ? pour_line() : pour_point();
@@ -152,22 +121,21 @@ void PileRun::act() {
 
 bool PileRun::settled(int grains) const {
   const double r = 0.5 * mean_diameter_;
-  const double energy = setup_.material.density * total_area(grains_) / setup_.source.grains *
+  const double energy = setup_.material.density * total_area(drawn_.poured) / setup_.source.grains *
                         setup_.material.gravity * r;
   return engine_->motion().kinetic_energy <= kSettledShare * energy * grains;
 }
 
 void PileRun::rest() {
   const Diagnostics d = engine_->measure();
-  if (at_rest(d, setup_.rest)) {
-    at_pile_ = d;
-    pile_ = named(engine_->snapshot(), "pile");
-    check_not_leaning(setup_, *pile_);
-    changes_->start_from(*pile_);
-    enter(changes_->done() ? PilePhase::done : PilePhase::change);
-  } else if (in_phase() > setup_.rest.max_time) {
-    fail_to_rest(d, setup_.rest, "after the pour", smaller_step(setup_.motion));
-  }
+  if (!has_come_to_rest(d, "after the pour", smaller_step(setup_.motion))) return;
+  at_pile_ = d;
+  pile_ = named_snapshot(
+      *engine_, "pile", seed_,
+      {{"source", setup_.source.kind}, {"shape", setup_.shape.kind}, {"floor", setup_.floor.kind}});
+  check_not_leaning(setup_, *pile_);
+  changes_->start_from(*pile_);
+  enter(changes_->done() ? PilePhase::done : PilePhase::change);
 }
 
 void PileRun::change(long steps) {

@@ -9,71 +9,74 @@ namespace grainfield::testing {
 namespace {
 
 // From the bottom up: a room knows only rooms above its line.
-const std::vector<Room>& rooms() {
-  static const std::vector<Room> kRooms{
-      {"base", {}},
-      {"statistics", {"base"}},
-      {"averaging", {"base", "statistics"}},
-      {"strain", {"averaging", "base", "statistics"}},
-      {"structure", {"averaging", "base", "statistics"}},
-      {"import", {"averaging", "base"}},
-      {"judge", {"statistics"}},
-      {"compare", {"averaging", "judge", "statistics"}},
-      {"specimen", {"averaging", "base", "statistics"}},
-      {"store", {"base"}},
-      {"result", {"base", "compare", "judge", "store"}},
-      {"elastic_constants", {"averaging", "base", "result", "statistics"}},
-      {"report", {"averaging", "base", "judge", "result", "store"}},
-      {"models", {"averaging", "base", "compare", "result"}},
-      {"case", {"base", "models", "result"}},
-      {"export", {"base", "report", "result", "store", "structure"}},
-      {"run",
-       {"averaging", "base", "case", "compare", "export", "judge", "report", "result", "statistics",
-        "store", "structure"}},
-      {"observe",
-       {"averaging", "base", "case", "compare", "specimen", "import", "models", "report", "result",
-        "run", "store"}},
-      {"fit",
-       {"averaging", "case", "compare", "judge", "models", "observe", "report", "result", "run",
-        "statistics", "structure"}},
-      // Each study by itself, and what it takes from others of its kind.
-      {"studies/sample/simulation", {}},
-      {"studies/point_load",
-       {"averaging", "base", "case", "compare", "elastic_constants", "fit", "judge", "models",
-        "observe", "report", "result", "run"}},
-      {"studies/pile",
-       {"averaging", "base", "case", "compare", "fit", "specimen", "models", "observe", "report",
-        "result", "run", "statistics"}},
-      {"studies/pile_fields",
-       {"averaging", "base", "case", "elastic_constants", "specimen", "judge", "report", "result",
-        "run", "statistics", "store", "strain", "structure", "studies/pile"}},
-      {"studies/cone",
-       {"averaging", "base", "case", "specimen", "judge", "models", "observe", "report", "result",
-        "run", "studies/pile", "studies/sample/simulation"}},
-      {"studies/lattice_pile", {"case", "compare", "models", "report", "result", "run"}},
-      {"studies/sample",
-       {"averaging", "case", "elastic_constants", "judge", "report", "result", "run", "statistics",
-        "store", "strain", "structure", "studies/sample/simulation"}},
-      {"studies/pair", {"case", "report", "result", "run"}},
-      {"studies/hard_disks", {"case", "judge", "report", "result", "run"}},
-      {"studies/implicit_settling", {"case", "observe", "result", "run", "studies/lattice_pile"}},
-      {"studies/hard_to_soft", {"case", "observe", "run"}},
-      {"studies/solvers", {"averaging", "case", "models", "run", "studies/point_load"}},
-      {"studies/wedge",
-       {"averaging", "case", "specimen", "judge", "models", "report", "result", "run", "store",
-        "studies/point_load"}},
-      {"studies", {"case"}},
-      {"tasks",
-       {"averaging", "base", "case", "compare", "fit", "specimen", "import", "judge", "models",
-        "observe", "result", "run", "store", "strain", "studies/pile", "studies/point_load"}},
-      {"app",
-       {"averaging", "base", "case", "export", "import", "judge", "models", "result", "run",
-        "store", "structure", "tasks"}},
-      {"python",
-       {"app", "base", "case", "compare", "fit", "import", "judge", "models", "result", "run",
-        "store", "structure", "tasks"}},
-  };
-  return kRooms;
+const std::vector<Room> kBelowStudies{
+    {"base", {}},
+    {"statistics", {"base"}},
+    {"averaging", {"base", "statistics"}},
+    {"strain", {"averaging", "base", "statistics"}},
+    {"structure", {"averaging", "base", "statistics"}},
+    {"import", {"averaging", "base"}},
+    {"judge", {"statistics"}},
+    {"compare", {"averaging", "judge", "statistics"}},
+    {"specimen", {"averaging", "base", "statistics"}},
+    {"store", {"base"}},
+    {"result", {"base", "compare", "judge", "store"}},
+    {"elastic_constants", {"averaging", "base", "result", "statistics"}},
+    {"report", {"averaging", "base", "judge", "result", "store"}},
+    {"models", {"averaging", "base", "compare", "result"}},
+    {"case", {"base", "models", "result"}},
+    {"export", {"base", "report", "result", "store", "structure"}},
+    {"run",
+     {"averaging", "base", "case", "compare", "export", "judge", "report", "result", "statistics",
+      "store", "structure"}},
+    {"observe",
+     {"averaging", "base", "case", "compare", "specimen", "import", "models", "report", "result",
+      "run", "store"}},
+    {"fit",
+     {"averaging", "case", "compare", "judge", "models", "observe", "report", "result", "run",
+      "statistics", "structure"}},
+};
+
+// What studies take from others of their kind, besides all rooms above.
+const std::map<std::string, std::set<std::string>> kTakenFromOthers{
+    {"studies/sample", {"studies/sample/simulation"}},
+    {"studies/cone", {"studies/pile", "studies/sample/simulation"}},
+    {"studies/pile_fields", {"studies/pile"}},
+    {"studies/implicit_settling", {"studies/lattice_pile"}},
+    {"studies/solvers", {"studies/point_load"}},
+    {"studies/wedge", {"studies/point_load"}}};
+
+const std::vector<Room> kAboveStudies{
+    {"studies", {"case"}},
+    {"tasks",
+     {"averaging", "base", "case", "compare", "fit", "specimen", "import", "judge", "models",
+      "observe", "result", "run", "store", "strain", "studies/pile", "studies/point_load"}},
+    {"app",
+     {"averaging", "base", "case", "export", "import", "judge", "models", "result", "run", "store",
+      "structure", "tasks"}},
+    {"python",
+     {"app", "base", "case", "compare", "fit", "import", "judge", "models", "result", "run",
+      "store", "structure", "tasks"}},
+};
+
+std::vector<Room> rooms() {
+  namespace fs = std::filesystem;
+  std::vector<Room> out = kBelowStudies;
+  std::set<std::string> below;
+  for (const Room& room : out) below.insert(room.name);
+  std::vector<Room> takers{{"studies/sample/simulation", {}}};
+  const fs::path coupling = fs::path(GRAINFIELD_SOURCES) / "coupling";
+  for (const auto& entry : fs::directory_iterator(coupling / "studies")) {
+    if (!entry.is_directory()) continue;
+    const std::string name = fs::relative(entry.path(), coupling).generic_string();
+    const auto others = kTakenFromOthers.find(name);
+    const bool takes = others != kTakenFromOthers.end();
+    Room& room = (takes ? takers : out).emplace_back(Room{name, below});
+    if (takes) room.knows.insert(others->second.begin(), others->second.end());
+  }
+  out.insert(out.end(), takers.begin(), takers.end());
+  out.insert(out.end(), kAboveStudies.begin(), kAboveStudies.end());
+  return out;
 }
 
 TEST(Rooms, KnowOnlyWhatIsBelowThem) {

@@ -157,7 +157,7 @@ TEST(SampleOfSuperellipsoids, WhatDoesNotFitIsRefused) {
     SampleSetup s = setup_of("penalty", "periodic");
     change(s);
     try {
-      check_sample(s);
+      SampleGroundwork::check(s);
     } catch (const std::invalid_argument& e) {
       return std::string(e.what());
     }

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "coupling/studies/point_load/layer.h"
 #include "coupling/studies/point_load/simulation.h"
-#include "coupling/studies/point_load/simulation_space.h"
 #include "dem/grains/layer_3d.h"
 #include "dem/run/outlook.h"
 #include "dem/snapshot/contact_changes.h"
@@ -173,7 +173,7 @@ TEST(SpaceLoad, ADiskOfGrainsSharesTheForce) {
   write_snapshot(file, "/loaded", loaded);
   EXPECT_EQ(read_snapshot(file, "/loaded").also_loaded, loaded.also_loaded);
   std::filesystem::remove(file);
-  const auto engine = make_engine(space_load_settings(s, 1), loaded);
+  const auto engine = make_engine(Layer<3>::settings(s, {}, 1), loaded);
   engine->step(1);
   EXPECT_LT(engine->measure().unbalanced_force_ratio, 1e-5);
 }
@@ -434,7 +434,8 @@ TEST(SpaceLayer, MeanVolumeIsThatOfTheDraws) {
     EXPECT_NEAR(mean_sphere_radius(p), radius, 0.01 * radius) << sizes;
     p.shape = "superellipsoid";
     p.width = 0.3;
-    const std::vector<ShapedGrain> drawn = draw_layer(p, random, 20000);
+    const std::vector<ShapedGrain> drawn =
+        draw_layer(p, random, [left = 20000]() mutable { return left-- > 0; });
     double mean = 0, reach = 0;
     for (const ShapedGrain& g : drawn) {
       mean += g.area / static_cast<double>(drawn.size());

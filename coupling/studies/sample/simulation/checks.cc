@@ -15,7 +15,6 @@
 #include "coupling/studies/sample/simulation/probe.h"
 #include "coupling/studies/sample/simulation/sample.h"
 #include "dem/run/common.h"
-#include "dem/run/judge_draws.h"
 #include "dem/shapes/superellipsoid.h"
 #include "dem/shared/refuse.h"
 #include "dem/space/moving_cell.h"
@@ -324,7 +323,7 @@ double stiffness_of(const SampleSetup& s) {
 
 }  // namespace
 
-void check_sample(const SampleSetup& s) {
+void SampleGroundwork::check(const Setup& s) {
   check_dimension(s);
   check_servo(s.plan);
   check_strains(s.plan);
@@ -340,8 +339,15 @@ void check_sample(const SampleSetup& s) {
   }
 }
 
-SampleFrame sample_frame(const SampleSetup& s, const GrainExtremes& extremes, double reserve) {
+std::vector<ShapedGrain> SampleGroundwork::draw(const Setup& s, Random& random,
+                                                Allowance& allowance) {
+  return draw_sample(s.plan, random, allowance);
+}
+
+SampleFrame SampleGroundwork::settings(const Setup& s, const std::vector<ShapedGrain>& grains,
+                                       double reserve) {
   const SamplePlan& p = s.plan;
+  const GrainExtremes extremes = sample_extremes(p, s.material.density, grains);
   SampleFrame out;
   const ShapeKind shape = p.shape == "superellipsoid" ? ShapeKind::superellipsoid
                           : p.dim == 3                ? ShapeKind::sphere
@@ -389,45 +395,25 @@ double widest_first_edge(const SamplePlan& plan) {
   return least;
 }
 
-Outlook foresee_sample(const SampleSetup& s, const std::vector<std::uint64_t>& seeds,
-                       std::int64_t draws) {
-  check_sample(s);
+Outlook SampleGroundwork::outlook(const Setup& s, const SampleFrame& frame) {
   const SamplePlan& p = s.plan;
   Outlook out;
+  out.take_step(frame.settings);
   out.grains = p.grains;
   out.bytes = p.grains * (kBytesOfGrain + kBytesOfRecord * states_of(p));
   out.bytes_key = "sample.grains";
-  const auto judge = [&](const std::vector<ShapedGrain>& grains, double reserve) {
-    const SampleFrame frame =
-        sample_frame(s, sample_extremes(p, s.material.density, grains), reserve);
-    if (out.time_step > 0) return;
-    out.take_step(frame.settings);
-    const double probes = probe_time(s, out.time_step);
-    double most = 0;
-    for (const auto& [key, time] : {std::pair("sample.drop_damping", frame.drop_time),
-                                    {"sample.compression_rate", frame.compression_time},
-                                    {"sample.strain_rate", frame.deformation_time},
-                                    {"rest.background_damping", probes}}) {
-      out.time += time;
-      if (time <= most) continue;
-      most = time;
-      out.time_key = key;
-    }
-  };
-  // Polygons and superellipsoids are drawn, as many as allowed; of round grains the extremes are
-  // known.
-  if (p.shape == "disk" || p.shape == "sphere") {
-    judge({}, 1);
-    return out;
-  }
-  SamplePlan some = p;
-  const auto draw = [&](Random& random, std::int64_t& left) {
-    some.grains = static_cast<int>(std::min<std::int64_t>(left, p.grains));
-    left -= some.grains;
-    return draw_sample(some, random);
-  };
-  judge_draws(seeds, draws, draw, judge);
+  Times times;
+  times.add("sample.drop_damping", frame.drop_time);
+  times.add("sample.compression_rate", frame.compression_time);
+  times.add("sample.strain_rate", frame.deformation_time);
+  times.add("rest.background_damping", probe_time(s, out.time_step));
+  times.put_into(out);
   return out;
+}
+
+Outlook foresee_sample(const SampleSetup& setup, const std::vector<std::uint64_t>& seeds,
+                       std::int64_t draws) {
+  return foresee<SampleGroundwork>(setup, seeds, draws);
 }
 
 }  // namespace grainfield::dem

@@ -2,6 +2,7 @@
 #pragma once
 #include "coupling/studies/sample/simulation/grains.h"
 #include "dem/engine/engine.h"
+#include "dem/run/groundwork.h"
 
 namespace grainfield::dem {
 
@@ -13,14 +14,18 @@ struct SampleFrame {
   double deformation_time = 0;  ///< s
 };
 
-/// Throws std::invalid_argument naming the key: a shape or law of another dimension, a servo
-/// without a target, words that do not go together.
-void check_sample(const SampleSetup& setup);
-
-/// The same for what depends on grains: stable step, speeds, the size of the box (of grains of mean
-/// volume). `reserve` as in engine_settings.
-SampleFrame sample_frame(const SampleSetup& setup, const GrainExtremes& extremes,
-                         double reserve = 1);
+/// What its run starts from (Groundwork).
+struct SampleGroundwork {
+  using Setup = SampleSetup;
+  static constexpr const char* kName = "sample";
+  /// A shape or law of another dimension, a servo without a target, words that do not go together.
+  static void check(const Setup& setup);
+  static std::vector<ShapedGrain> draw(const Setup& setup, Random& random, Allowance& allowance);
+  /// Stable step, speeds, the size of the box (of grains of mean volume).
+  static SampleFrame settings(const Setup& setup, const std::vector<ShapedGrain>& grains,
+                              double reserve = 1);
+  static Outlook outlook(const Setup& setup, const SampleFrame& frame);
+};
 
 /// Least edge that the sample can have in its first state, at most, m: its grains are of mean
 /// volume, and a pressure is not reached before they fill the least that carries load.

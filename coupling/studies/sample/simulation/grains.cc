@@ -127,7 +127,9 @@ double mean_volume(const SamplePlan& p) {
   return few * volume_of(p.radius / p.size_ratio, p.dim) + (n - few) * one;
 }
 
-std::vector<ShapedGrain> draw_sample(const SamplePlan& p, Random& random) {
+std::vector<ShapedGrain> draw_sample(const SamplePlan& plan, Random& random, Allowance& allowance) {
+  SamplePlan p = plan;
+  p.grains = is_round(p) ? allowance.at_most(p.grains) : allowance.grant(p.grains);
   std::vector<ShapedGrain> grains;
   grains.reserve(static_cast<std::size_t>(p.grains));
   const int small = p.sizes == "bidisperse" ? small_ones(p) : 0;
@@ -137,6 +139,11 @@ std::vector<ShapedGrain> draw_sample(const SamplePlan& p, Random& random) {
     grains.push_back(draw(p, radius, random));
   }
   return grains;
+}
+
+std::vector<ShapedGrain> draw_sample(const SamplePlan& plan, Random& random) {
+  Allowance all;
+  return draw_sample(plan, random, all);
 }
 
 double most_start_fraction(const SamplePlan& p) {

@@ -8,6 +8,7 @@
 #include "coupling/studies/sample/simulation/setup.h"
 #include "dem/engine/engine.h"
 #include "dem/grains/grain_family.h"
+#include "dem/run/groundwork.h"
 
 namespace grainfield::dem {
 
@@ -32,7 +33,8 @@ SampleRadii gap_radii(const SamplePlan& plan);
 double draw_gap_radius(const SamplePlan& plan, Random& random);
 
 /// In the order of their ids; of spheres `area` is the volume, m3.
-std::vector<ShapedGrain> draw_sample(const SamplePlan& plan, Random& random);
+std::vector<ShapedGrain> draw_sample(const SamplePlan& plan, Random& random, Allowance& allowance);
+std::vector<ShapedGrain> draw_sample(const SamplePlan& plan, Random& random);  ///< all of them
 
 /// Solid fraction that grains placed at random without overlap may have at most, about: of
 /// superellipsoids that of the spheres about them.

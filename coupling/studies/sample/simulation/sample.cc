@@ -22,8 +22,7 @@
 #include "coupling/studies/sample/simulation/state.h"
 #include "coupling/studies/sample/simulation/view.h"
 #include "coupling/studies/sample/simulation/walls.h"
-#include "dem/run/fingerprint.h"
-#include "dem/run/phases.h"
+#include "dem/run/phased_run.h"
 #include "dem/walls/box.h"
 
 namespace grainfield::dem {
@@ -32,8 +31,8 @@ namespace {
 using Phase = SamplePhase;
 
 // Steps between two decisions: of the compression and of a cell's servo; of an unloading to a
-// stress; of sides that tilt; else.
-constexpr long kServoEvery = 3, kUnloadEvery = 20, kTiltEvery = 100, kCheckEvery = 200;
+// stress; of sides that tilt.
+constexpr long kServoEvery = 3, kUnloadEvery = 20, kTiltEvery = 100;
 // Solid fractions near which pressures are reached, about; for the progress.
 constexpr double kDense2 = 0.84, kDense3 = 0.64;
 // Spheres of a gap are drawn from a seed of their own.
@@ -56,13 +55,11 @@ std::vector<ShapedGrain> shapes_of(const Snapshot& s) {
   return out;
 }
 
-class SampleRun final : public ArchivedRun {
+class SampleRun final : public PhasedRun<SampleGroundwork, Phase> {
  public:
   SampleRun(const SampleSetup& setup, std::uint64_t seed, int threads, const Snapshot* filled);
 
   void advance(long steps) override;
-  bool done() const override { return phases_.done(); }
-  Progress progress() const override;
   RunResult result() const override;
 
  private:
@@ -70,7 +67,6 @@ class SampleRun final : public ArchivedRun {
   bool periodic() const { return is_periodic(plan_); }
   bool is_led_now() const { return any_led(plan_, phases_.now()); }
   long every() const;
-  double in_phase() const { return static_cast<double>(phases_.steps()) * engine_->time_step(); }
   /// So many steps from now.
   double strain(long steps = 0) const {
     const double step = engine_->time_step();
@@ -82,7 +78,8 @@ class SampleRun final : public ArchivedRun {
     return compressed_share(plan_, sample_edges(plan_, *engine_)[last()], box_[last()], fraction());
   }
   Cell<3> cell_at_start() const;
-  std::unique_ptr<Engine> empty_engine() const;
+  std::unique_ptr<Engine> empty_engine() const override;
+  double share(const Diagnostics& state) const override;
   double wall_friction() const;
   void take_settings(const std::vector<ShapedGrain>& grains, int threads);
   void go_on_from(FilledBox box);
@@ -94,7 +91,7 @@ class SampleRun final : public ArchivedRun {
   void change_friction();
 
   void begin(Phase phase);
-  void decide();
+  void decide() override;
   void decide_drop();
   void decide_compression();
   void decide_rest();
@@ -109,11 +106,8 @@ class SampleRun final : public ArchivedRun {
   void visit(Archive& archive) override;
   std::string fingerprint() const override;
 
-  SampleSetup setup_;
   const SamplePlan& plan_ = setup_.plan;
-  std::uint64_t seed_;
-  std::string filled_from_;  // seed of the run that has filled the box, or nothing
-  EngineSettings settings_;
+  std::string filled_from_;      // seed of the run that has filled the box, or nothing
   std::array<double, 3> box_{};  // edges at the start, m
   double solid_volume_ = 0;      // of all grains, m3 (m2)
   double dropped_fraction_ = 0;  // solid fraction as the lid has been put on
@@ -121,17 +115,6 @@ class SampleRun final : public ArchivedRun {
   double compression_time_ = 0;  // s, at least
   CellServo cell_servo_;
   SampleProber prober_{setup_};
-  Phases<Phase> phases_{{{"drop", true, 0, 0.2},
-                         {"compress", true, 0, 0.3},
-                         {"rest", true, 0.3, 0.4},
-                         {"probe", true, 0.4, 0.42},
-                         {"precompress", false, 0.42, 0.5},
-                         {"settle", true, 0.5, 0.53},
-                         {"probe", true, 0.53, 0.55},
-                         {"deform", false, 0.55, 0.8},
-                         {"unload", false, 0.8, 1},
-                         {"done", false, 1, 1}}};
-  std::unique_ptr<Engine> engine_;
   // Steps of the phase until the next state; of an unloading to a stress the steps at which the
   // deformation would have been taken back twice.
   long next_record_ = 0;
@@ -143,8 +126,17 @@ class SampleRun final : public ArchivedRun {
 
 SampleRun::SampleRun(const SampleSetup& setup, std::uint64_t seed, int threads,
                      const Snapshot* filled)
-    : setup_(setup), seed_(seed) {
-  check_sample(setup_);
+    : PhasedRun(setup, seed,
+                {{"drop", true, 0, 0.2},
+                 {"compress", true, 0, 0.3},
+                 {"rest", true, 0.3, 0.4},
+                 {"probe", true, 0.4, 0.42},
+                 {"precompress", false, 0.42, 0.5},
+                 {"settle", true, 0.5, 0.53},
+                 {"probe", true, 0.53, 0.55},
+                 {"deform", false, 0.55, 0.8},
+                 {"unload", false, 0.8, 1},
+                 {"done", false, 1, 1}}) {
   const double density = setup_.material.density;
   if (filled != nullptr) {
     FilledBox box = filled_box(*filled, plan_, density);
@@ -164,15 +156,12 @@ SampleRun::SampleRun(const SampleSetup& setup, std::uint64_t seed, int threads,
   cell_servo_.interval = kServoEvery * settings_.time_step;
 
   engine_ = empty_engine();
-  for (const NewGrain& grain : place_sample(plan_, grains, box_, density, random)) {
-    engine_->add(grain);
-  }
+  add(place_sample(plan_, grains, box_, density, random));
   begin(is_dropped(plan_) ? Phase::drop : Phase::compress);
 }
 
 void SampleRun::take_settings(const std::vector<ShapedGrain>& grains, int threads) {
-  const SampleFrame frame =
-      sample_frame(setup_, sample_extremes(plan_, setup_.material.density, grains));
+  const SampleFrame frame = SampleGroundwork::settings(setup_, grains);
   settings_ = frame.settings;
   compression_time_ = frame.compression_time;
   settings_.threads = threads;
@@ -450,42 +439,29 @@ double SampleRun::unloading_level() const {
   return most + share * (least - most);
 }
 
-Progress SampleRun::progress() const {
-  const Diagnostics d = engine_->measure();
-  Progress p = progress_of(*engine_, d);
-  p.phase = phases_.info().name;
-  double share = 1;
+double SampleRun::share(const Diagnostics& state) const {
   switch (phases_.now()) {
-    case Phase::drop:
-      share = rest_progress(d, setup_.rest);
-      break;
     case Phase::compress:
-      share = compresses_to_pressure(plan_) ? fraction() / (plan_.dim == 2 ? kDense2 : kDense3)
-                                            : compressed();
-      break;
+      return compresses_to_pressure(plan_) ? fraction() / (plan_.dim == 2 ? kDense2 : kDense3)
+                                           : compressed();
+    case Phase::drop:
     case Phase::rest:
     case Phase::settle:
-      share = rest_progress(d, setup_.rest);
-      break;
+      return rest_progress(state, setup_.rest);
     case Phase::probe_prepared:
     case Phase::probe_first:
-      share = prober_.share();
-      break;
+      return prober_.share();
     case Phase::precompress:
-      share = strain_at(plan_, in_phase()) / plan_.precompression;
-      break;
+      return strain_at(plan_, in_phase()) / plan_.precompression;
     case Phase::deform:
-      share = strain() / plan_.strain;
-      break;
+      return strain() / plan_.strain;
     case Phase::unload:
-      share = static_cast<double>(static_cast<int>(states_.size()) - plan_.records - 1) /
-              plan_.unload_records;
-      break;
+      return static_cast<double>(static_cast<int>(states_.size()) - plan_.records - 1) /
+             plan_.unload_records;
     case Phase::done:
       break;
   }
-  p.fraction = done() ? 1 : phases_.fraction(share);
-  return p;
+  return 1;
 }
 
 void SampleRun::visit(Archive& archive) {
@@ -502,7 +478,7 @@ void SampleRun::visit(Archive& archive) {
   archive(next_record_);
   cell_servo_.visit(archive);
   prober_.visit(archive);
-  archive.engine(engine_, [this] { return empty_engine(); });
+  visit_engine(archive);
   auto count = static_cast<int>(states_.size());
   archive(count);
   archive.require(count >= 0 && count <= states_of(plan_) &&
@@ -517,8 +493,7 @@ void SampleRun::visit(Archive& archive) {
 }
 
 std::string SampleRun::fingerprint() const {
-  return fmt::format("sample {} {} {} {}", fingerprint_of(setup_), settings_.time_step, seed_,
-                     filled_from_);
+  return fmt::format("{} {}", PhasedRun::fingerprint(), filled_from_);
 }
 
 RunResult SampleRun::result() const {

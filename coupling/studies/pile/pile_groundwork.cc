@@ -1,4 +1,5 @@
-// What a pile will take, and whether it can be set up.
+#include "coupling/studies/pile/pile_groundwork.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,11 +7,8 @@
 #include <limits>
 
 #include "coupling/studies/pile/pile_checks.h"
-#include "coupling/studies/pile/simulation.h"
-#include "dem/grains/grain_family.h"
 #include "dem/pouring/source.h"
 #include "dem/run/common.h"
-#include "dem/run/judge_draws.h"
 
 namespace grainfield::dem {
 namespace {
@@ -52,42 +50,66 @@ double most_area(const PileSetup& s) {
   return n * disk_grain(s.shape.radius).area * second * (1 + kAreaErrors * error);
 }
 
+// Of all grains of a pile of which these were drawn, at most, m2.
+double area_ahead(const PileSetup& s, const std::vector<ShapedGrain>& drawn) {
+  const double n = s.source.grains, count = static_cast<double>(drawn.size());
+  const double area = total_area(drawn), mean = area / count;
+  double squares = 0;
+  for (const ShapedGrain& g : drawn) squares += g.area * g.area;
+  const double variation = std::sqrt(std::max(0.0, squares / count - mean * mean)) / mean;
+  const double error = variation * (1 / std::sqrt(n) + 1 / std::sqrt(count));
+  return std::min(area * n / count * (1 + kAreaErrors * error), most_area(s));
+}
+
 }  // namespace
 
-Outlook foresee_pile(const PileSetup& s, const std::vector<std::uint64_t>& seeds,
-                     std::int64_t most) {
+void PileGroundwork::check(const Setup& s) {
   check_pile(s);
+  length_in_grains(s);
+}
+
+PileGrains PileGroundwork::draw(const Setup& s, Random& random, Allowance& allowance) {
+  PileGrains out;
+  const double work = draw_work(s.shape);
+  for (int k = allowance.grant(s.source.grains, work); k > 0; --k) {
+    out.poured.push_back(draw_grain(s.shape, random));
+  }
+  if (s.floor.kind != "rough") return out;
+  for (double room = s.floor.length; allowance.grant_one(work);) {
+    const ShapedGrain next = draw_grain(s.shape, random);
+    room -= 2 * next.radius;
+    if (room < 0) break;
+    out.floor.push_back(next);
+  }
+  return out;
+}
+
+EngineSettings PileGroundwork::settings(const Setup& s, const PileGrains& grains, double reserve) {
+  std::vector<ShapedGrain> all = grains.poured;
+  all.insert(all.end(), grains.floor.begin(), grains.floor.end());
+  EngineSettings out =
+      engine_settings(s.material, s.motion, extremes_of(all, s.material.density), 1,
+                      s.shape.kind == "rand1" || s.shape.kind == "irregular", reserve);
+  check_background_damping(s.rest, out.time_step);
+  const double largest = largest_radius(grains.poured);
+  if (reserve > 1) {
+    check_source(s, kSizeReserve * largest, area_ahead(s, grains.poured));
+  } else {
+    check_source(s, largest, total_area(grains.poured));
+  }
+  out.shape =
+      (s.shape.kind != "disk" || s.source.opening > 0) ? ShapeKind::polygon : ShapeKind::disk;
+  out.sleep = s.sleep;
+  return out;
+}
+
+Outlook PileGroundwork::outlook(const Setup& s, const EngineSettings& settings) {
   Outlook out;
+  out.take_step(settings);
   out.grains = s.source.grains;
-  const double side_by_side = length_in_grains(s);
-  out.fixed = s.floor.kind == "rough" ? side_by_side : 0;
+  out.fixed = s.floor.kind == "rough" ? length_in_grains(s) : 0;
   out.bytes = (out.grains + out.fixed) * (s.shape.kind == "disk" ? kBytesOfDisk : kBytesOfPolygon);
   out.bytes_key = "source.grains";
-
-  const bool irregular = s.shape.kind == "rand1" || s.shape.kind == "irregular";
-  const double density = s.material.density;
-  Draws draws(most, seeds.size());
-  while (draws.next()) {
-    Random random(seeds[draws.at()]);
-    GrainTally poured(density);
-    draws.draw(s.shape, s.source.grains, random, poured);
-    GrainTally all = poured;
-    if (s.floor.kind == "rough") draws.fill(s.shape, s.floor.length, random, all);
-    // Those that follow are like these: where they are not drawn, a little is kept in reserve.
-    const bool whole = draws.all_known();
-    const EngineSettings settings = engine_settings(s.material, s.motion, all.extremes(), 1,
-                                                    irregular, whole ? 1 : kStepReserve);
-    check_background_damping(s.rest, settings.time_step);
-    if (out.time_step == 0) out.take_step(settings);
-    double area = poured.area();
-    if (!whole) {
-      const double n = s.source.grains, drawn = static_cast<double>(poured.count());
-      const double error = poured.area_variation() * (1 / std::sqrt(n) + 1 / std::sqrt(drawn));
-      area = std::min(area * n / drawn * (1 + kAreaErrors * error), most_area(s));
-    }
-    check_source(s, (whole ? 1 : kSizeReserve) * poured.largest_radius(), area);
-  }
-
   Times times;
   if (s.source.kind == "point") {
     times.add("source.interval", s.source.grains * s.source.interval);
@@ -98,6 +120,11 @@ Outlook foresee_pile(const PileSetup& s, const std::vector<std::uint64_t>& seeds
   add_changes(s.change, times);
   times.put_into(out);
   return out;
+}
+
+Outlook foresee_pile(const PileSetup& setup, const std::vector<std::uint64_t>& seeds,
+                     std::int64_t draws) {
+  return foresee<PileGroundwork>(setup, seeds, draws);
 }
 
 Outlook foresee_changes(const ChangeSetup& change) {
