@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "coupling/specimen/surface.h"
 #include "coupling/studies/pile/gravity_changes.h"
 #include "coupling/studies/pile/pile_groundwork.h"
 #include "dem/pouring/source.h"

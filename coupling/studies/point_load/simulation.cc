@@ -150,14 +150,10 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
     }
     const auto outcome = prober_->probe(probed_, this->watch_of("probe"));
     if (!outcome) return;
-    StateProbes all = probes_of(unloaded_->attributes, kProbedLayer);
+    StateProbes all = probes_of(*unloaded_, kProbedLayer);
     all.stress = prober_->stress_before();
-    const std::string direction = LayerProber::direction(probed_);
-    const auto known = std::find_if(all.probes.begin(), all.probes.end(),
-                                    [&](const Probe& p) { return p.direction == direction; });
-    Probe& one = known == all.probes.end() ? all.probes.emplace_back(Probe{direction, {}}) : *known;
-    one.outcomes[static_cast<std::size_t>(probed_ % 2)] = *outcome;
-    put_probes(all, unloaded_->attributes);
+    add_outcome(all, LayerProber::direction(probed_), probed_, *outcome);
+    put_probes(all, *unloaded_);
     ++probed_;
   }
 
