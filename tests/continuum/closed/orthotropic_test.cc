@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 namespace {
 
 std::string refusal(const Settings& settings) {
-  return refusal("orthotropic_half_plane", settings);
+  return grainfield::continuum::refusal("orthotropic_half_plane", settings);
 }
 
 Orthotropy random_medium(Random& random) {

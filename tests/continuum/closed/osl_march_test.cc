@@ -135,7 +135,7 @@ TEST(OslMarch, FailuresSayWhatToChange) {
   try {
     osl::march(p, osl::heap_mesh(2, 1, 8, 1, 0), line(1, 1, 3), {1e-9, 3});
     FAIL();
-  } catch (const ComputationFailed& e) {
+  } catch (const grainfield::ComputationFailed& e) {
     EXPECT_THAT(e.what(), HasSubstr("after 3 steps (too many); raise steps (now 3) or lower"));
   }
   const auto refusal = [&](const osl::Problem& q, const osl::StripMesh& mesh) -> std::string {

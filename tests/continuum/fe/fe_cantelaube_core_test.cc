@@ -19,7 +19,9 @@ using ::testing::HasSubstr;
 
 namespace {
 
-std::string refusal(const Settings& settings) { return refusal("fe_cantelaube_core", settings); }
+std::string refusal(const Settings& settings) {
+  return grainfield::continuum::refusal("fe_cantelaube_core", settings);
+}
 
 }  // namespace
 
@@ -87,7 +89,7 @@ TEST(CantelaubeCore, OutsideIsNanAndSettingsAreChecked) {
   try {
     failing->stress(Points(0, 2));
     FAIL();
-  } catch (const ComputationFailed& failure) {
+  } catch (const grainfield::ComputationFailed& failure) {
     EXPECT_THAT(failure.what(), HasSubstr("the axis misses its yield condition by"));
     EXPECT_THAT(failure.what(), HasSubstr("raise axis_iterations"));
   }
@@ -95,7 +97,7 @@ TEST(CantelaubeCore, OutsideIsNanAndSettingsAreChecked) {
   try {
     unsolved->stress(Points(0, 2));
     FAIL();
-  } catch (const ComputationFailed& failure) {
+  } catch (const grainfield::ComputationFailed& failure) {
     EXPECT_THAT(failure.what(), HasSubstr("conjugate gradients stopped after 1 iterations"));
     EXPECT_THAT(failure.what(), HasSubstr("raise iterations"));
   }

@@ -72,7 +72,7 @@ TEST(FeLayer, FailuresSayWhatToChange) {
   const auto message = [&](const Settings& settings) -> std::string {
     try {
       make_model("fe_elastic_layer", settings)->stress(point);
-    } catch (const ComputationFailed& failure) {
+    } catch (const grainfield::ComputationFailed& failure) {
       return failure.what();
     }
     return "no failure";

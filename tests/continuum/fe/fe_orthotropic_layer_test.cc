@@ -20,7 +20,9 @@ using ::testing::HasSubstr;
 
 namespace {
 
-std::string refusal(const Settings& settings) { return refusal("fe_orthotropic_layer", settings); }
+std::string refusal(const Settings& settings) {
+  return grainfield::continuum::refusal("fe_orthotropic_layer", settings);
+}
 
 }  // namespace
 

@@ -353,7 +353,7 @@ TEST(FeOslModels, RefusalsNameWhatIsAllowed) {
               HasSubstr("allowed between walls: above 0"));
   EXPECT_THROW(make_model("fe_osl_wedge", {{"solver", "march"}, {"steps", "2"}})
                    ->stress((Points(1, 2) << 0, -1).finished()),
-               ComputationFailed);
+               grainfield::ComputationFailed);
 }
 
 TEST(FeOslModels, OutsideIsNan) {

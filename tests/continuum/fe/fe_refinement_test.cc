@@ -104,7 +104,7 @@ TEST(FeRefinement, StopsBeforeItTakesAllMemory) {
   try {
     solve_wedge(p);
     FAIL() << "1000 unknowns were exceeded";
-  } catch (const ComputationFailed& e) {
+  } catch (const grainfield::ComputationFailed& e) {
     EXPECT_NE(std::string(e.what()).find("allowed: up to most_unknowns = 1000; lower refinements"),
               std::string::npos)
         << e.what();
