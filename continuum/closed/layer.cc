@@ -8,10 +8,13 @@
 namespace grainfield::continuum {
 namespace {
 
+/// In space exp(-48) u^3 is below 1e-15 of the peak.
+constexpr double kTail = 48;
+
 std::unique_ptr<Model> make_layer(const Settings& s) {
   const double F = number_of(s, "F"), h = number_of(s, "h"), nu = number_of(s, "nu");
   const Orthotropy isotropic{1, 1};
-  const OrthotropicWaves waves(isotropic, nu / (1 - nu), s.at("base") == "rough");
+  const OrthotropicWaves waves(isotropic, nu / (1 - nu), s.at("base") == "rough", kTail);
   if (s.at("dim") == "2") return layer_in_plane(F, h, isotropic, waves, {});
   return layer_in_space(F, h, waves, {nu, nu}, [F, nu](double x, double y, double z) {
     return boussinesq_stress(F, nu, x, y, z);

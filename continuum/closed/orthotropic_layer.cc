@@ -19,8 +19,6 @@ using Gauss = boost::math::quadrature::gauss<double, 30>;
 
 /// Values that differ from the base's height by less than this part of h are on the base.
 constexpr double kOnBase = 1e-9;
-/// The integrand's tail beyond exp(-34) is left out (1e-15 of the peak).
-constexpr double kDecay = 34;
 /// Panels: 30 Gauss points carry 6 rad of cos(k x) and 2 units of u (the integrand's poles are at
 /// least 0.9 away from the real axis in an isotropic layer) to round-off.
 constexpr double kPanelPhase = 6, kPanelWidth = 2;
@@ -76,10 +74,11 @@ std::unique_ptr<Model> make(const Settings& s) {
 
 }  // namespace
 
-OrthotropicWaves::OrthotropicWaves(const Orthotropy& medium, double nu, bool rough)
+OrthotropicWaves::OrthotropicWaves(const Orthotropy& medium, double nu, bool rough, double tail)
     : medium_(medium),
       nu_(nu),
       rough_(rough),
+      tail_(tail),
       m_(std::sqrt(0.5 * (medium.r + std::sqrt(medium.t)))),
       square_(0.5 * (medium.r - std::sqrt(medium.t))) {}
 
@@ -143,7 +142,7 @@ void OrthotropicWaves::add_base(double u, double weight, const Eigen::ArrayXd& s
                                 const Take& take) const {
   const Eigen::Vector4d c = coefficients(u);
   for (Eigen::Index k = 0; k < share.size(); ++k) {
-    if (u * decay() * (2 - share[k]) > kDecay) continue;
+    if (u * decay() * (2 - share[k]) > tail_) continue;
     const Values v = reflected(c, u * share[k], u);
     take(k, u, weight, v.g2, v.g, v.g1);
   }
@@ -151,7 +150,7 @@ void OrthotropicWaves::add_base(double u, double weight, const Eigen::ArrayXd& s
 
 void OrthotropicWaves::integrate_base(const Eigen::ArrayXd& share, double phase,
                                       const Take& take) const {
-  const double end = kDecay / (decay() * (2 - share.maxCoeff()));
+  const double end = tail_ / (decay() * (2 - share.maxCoeff()));
   // Towards the hyperbolic limit the integrand's poles approach the real axis like the decay.
   const double width =
       std::min({kPanelWidth, kPanelPhase / std::max(phase + 2 * oscillation(), 1e-3),
@@ -172,13 +171,13 @@ Eigen::MatrixX3d OrthotropicWaves::total(double u, const Eigen::VectorXd& share)
   const Eigen::Vector4d c = coefficients(u);
   Eigen::MatrixX3d out(share.size(), 3);
   for (Eigen::Index k = 0; k < share.size(); ++k) {
-    if (u * decay() * share[k] > kDecay) {
+    if (u * decay() * share[k] > tail_) {
       out.row(k).setZero();
       continue;
     }
     // The half plane's pair is (1, m).
     Values v = pair(1 + c[0], m_ + c[1], u * share[k]);
-    if (u * decay() * (2 - share[k]) < kDecay) {
+    if (u * decay() * (2 - share[k]) < tail_) {
       const Values up = pair(c[2], c[3], u * (1 - share[k]));
       v = {v.g + up.g, v.g1 - up.g1, v.g2 + up.g2, 0};
     }

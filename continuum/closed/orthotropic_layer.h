@@ -26,14 +26,15 @@ namespace grainfield::continuum {
 
 class OrthotropicWaves {
  public:
+  /// `tail`: what the base adds is left out where its decay is below exp(-tail).
   /// Needs t > 0 and r > -sqrt(t). nu counts on a rough base only, where the material must be a
   /// solid: r + nu > 0 (G > 0) and nu^2 <= t. Otherwise there are poles on the way of integration.
-  OrthotropicWaves(const Orthotropy& medium, double nu, bool rough);
+  OrthotropicWaves(const Orthotropy& medium, double nu, bool rough, double tail = 34);
   /// A place's index, u = k h, weight, g'', g, g'.
   using Take = std::function<void(Eigen::Index, double, double, double, double, double)>;
   /// Hands over what the base adds (the half plane's part is orthotropic_stress) at the nodes of a
   /// quadrature over u, for places at the depths `share` (d/h in [0, 1]); phases up to u * `phase`
-  /// are resolved. Where g is below rounding it is left out.
+  /// are resolved.
   void integrate_base(const Eigen::ArrayXd& share, double phase, const Take& take) const;
   /// g'', g, g' of layer and half plane together; shares x 3.
   Eigen::MatrixX3d total(double u, const Eigen::VectorXd& share) const;
@@ -59,6 +60,7 @@ class OrthotropicWaves {
   Orthotropy medium_;
   double nu_;
   bool rough_;
+  double tail_;
   double m_, square_;  // m and D
 };
 

@@ -33,6 +33,21 @@ TEST(Registry, CountsAreWholeNumbers) {
               HasSubstr("radius = 2 is out of range; allowed: 0, or at least 4"));
 }
 
+TEST(Registry, MeshesThatTakeTooMuchMemoryAreRefused) {
+  for (const char* heap : {"fe_mohr_coulomb_wedge", "fe_cone"})
+    EXPECT_THAT(
+        refusal(heap, {{"cells", "1000"}}),
+        HasSubstr("cells = 1000 ask for 4e+06 unknowns; allowed: up to 2e+06; lower cells"));
+  EXPECT_THAT(refusal("fe_transverse_layer", {{"cells", "40"}}),
+              HasSubstr("cells = 40, half_width = 8, degree = 0 ask for 3.9e+08 unknowns"));
+  EXPECT_THAT(refusal("fe_orthotropic_layer", {{"cells", "100"}}),
+              HasSubstr("cells = 100, half_width = 8, degree = 0 ask for 2.9e+06 unknowns"));
+  EXPECT_THAT(refusal("fe_transverse_half_space", {{"cells", "10"}}),
+              HasSubstr("cells = 10, degree = 0 ask for 4e+06 unknowns"));
+  EXPECT_THAT(refusal("fe_cantelaube_core", {{"refinement", "10"}}),
+              HasSubstr("refinement = 10, degree = 2 ask for 2.5e+07 unknowns"));
+}
+
 TEST(Registry, NotANumber) {
   for (const char* text : {"", "1x", "deep", "nan", "inf", "1e999"})
     EXPECT_THAT(refusal("layer", {{"h", text}}), HasSubstr("is not a number")) << text;

@@ -54,22 +54,24 @@ TEST(Idle, SpringsOfAnotherBase) {
                   std::string(base) + "; leave it out or set base = elastic");
   EXPECT_EQ(refusal("fe_cantelaube_core", {{"base", "elastic"}, {"base_stiffness", "2"}}),
             "accepted");
-  for (const char* base : {"rough", "smooth"})
-    for (const char* name : {"base_stiffness", "base_friction_deg"})
-      EXPECT_THAT(refusal("fe_mohr_coulomb_wedge", {{"base", base}, {name, "20"}}),
-                  AllOf(HasSubstr(std::string(name) + " = 20 has no effect with base = " + base),
-                        HasSubstr("leave it out or set base = frictional")));
-  EXPECT_EQ(refusal("fe_mohr_coulomb_wedge", {{"base", "frictional"}, {"base_friction_deg", "20"}}),
-            "accepted");
+  for (const char* heap : {"fe_mohr_coulomb_wedge", "fe_cone"}) {
+    for (const char* base : {"rough", "smooth"})
+      for (const char* name : {"base_stiffness", "base_friction_deg"})
+        EXPECT_THAT(refusal(heap, {{"base", base}, {name, "20"}}),
+                    AllOf(HasSubstr(std::string(name) + " = 20 has no effect with base = " + base),
+                          HasSubstr("leave it out or set base = frictional")));
+    EXPECT_EQ(refusal(heap, {{"base", "frictional"}, {"base_friction_deg", "20"}}), "accepted");
+  }
 }
 
 TEST(Idle, LayersOfAHeapLaidAtOnce) {
-  EXPECT_THAT(refusal("fe_mohr_coulomb_wedge", {{"layers", "4"}}),
-              HasSubstr("layers = 4 has no effect with history = at_once; leave it out or set "
-                        "history = rise or grow"));
-  for (const char* history : {"rise", "grow"})
-    EXPECT_EQ(refusal("fe_mohr_coulomb_wedge", {{"history", history}, {"layers", "4"}}),
-              "accepted");
+  for (const char* heap : {"fe_mohr_coulomb_wedge", "fe_cone"}) {
+    EXPECT_THAT(refusal(heap, {{"layers", "4"}}),
+                HasSubstr("layers = 4 has no effect with history = at_once; leave it out or set "
+                          "history = rise or grow"));
+    for (const char* history : {"rise", "grow"})
+      EXPECT_EQ(refusal(heap, {{"history", history}, {"layers", "4"}}), "accepted");
+  }
 }
 
 TEST(Idle, AxisThatDoesNotYield) {
