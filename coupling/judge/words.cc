@@ -344,12 +344,14 @@ std::string agreement_line(const Judgement& j) {
       return fmt::format("{}{} agrees within the errors: {}.",
                          best.description ? "The description " : "", best.label, own);
     }
-    std::string who = agreeing == 1 ? best.label : fmt::format("{} of the models", agreeing);
-    if (!descriptions.empty()) who += " and " + described(descriptions);
-    return fmt::format(
-        "{} agree within the errors{}: {} has {}.", who,
-        agreeing == supported ? "" : fmt::format(", {} of the models supported", supported),
-        best.label, own);
+    std::vector<std::string> who;
+    if (agreeing > 0) {
+      who.push_back(agreeing == 1 ? best.label : fmt::format("{} of the models", agreeing));
+    }
+    if (!descriptions.empty()) who.push_back(described(descriptions));
+    return fmt::format("{} agree within the errors{}: {} has {}.", joined(who),
+                       agreeing == supported ? "" : fmt::format(", {} supported", supported),
+                       best.label, own);
   }
   if (agreeing == 0) {
     return fmt::format("No model agrees within the errors{}: the misfit of {} is {}, and {}.",

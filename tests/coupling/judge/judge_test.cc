@@ -100,15 +100,15 @@ TEST(Judge, SupportedModelsAreNamedAlone) {
   EXPECT_THAT(line, StartsWith("The grains support "));
   EXPECT_THAT(line, ::testing::EndsWith(", which cannot be distinguished (8 realizations, 95 %)."));
   EXPECT_THAT(line, ::testing::Not(::testing::ContainsRegex("more|worse|other")));
-  EXPECT_THAT(agreement_line(j), StartsWith("6 of the models agree within the errors, 3 of them "
+  EXPECT_THAT(agreement_line(j), StartsWith("6 of the models agree within the errors, 3 "
                                             "supported: "));
   // A description that agrees is no model.
   Candidate description = candidate("d1", 1.0001, 7);
   description.model.description = true;
   all.push_back(description);
   EXPECT_THAT(agreement_line(judge(evidence(8, 0.1), all)),
-              StartsWith("6 of the models and the description d1 agree within the errors, 3 of the "
-                         "models supported: "));
+              StartsWith("6 of the models and the description d1 agree within the errors, 3 "
+                         "supported: "));
   all.push_back(description);
   all.back().model.name = "d2";
   EXPECT_THAT(agreement_line(judge(evidence(8, 0.1), all)),
