@@ -8,7 +8,8 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
 
     angles    of the packing before it is loaded: angles.near_60 and angles.near_30 are the shares of the contact
               forces within NEAR of a multiple of 60 degrees, and of 30 degrees from the horizontal,
-              angles.normals_near_60 and angles.normals_near_30 those of the contacts' normals; angles.order is 1
+              angles.normals_near_60 and angles.normals_near_30 those of the contacts' normals,
+              angles.strong_near_60 and angles.strong_near_30 those of the forces above the mean; angles.order is 1
               less the entropy of the forces' histogram (BINS over 180 degrees) over that of an even one
     gravity   of a heap under changed gravity, by the sum over contacts of force times branch: gravity.xx_ratio and
               gravity.yy_ratio are sigma at 20 m/s2 over that at 5; gravity.top_over_bottom is the mean
@@ -19,12 +20,21 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
               that within BESIDE
     poured    of heaps poured under 5 m/s2 and, in a second file, under 20: gravity.poured_xx_ratio and
               gravity.poured_yy_ratio, the mean of the second over that of the first, by the same sums
-    strain    of a layer, by a field of `grainfield strain`: strain.peaks is the largest number of peaks of its
-              vertical strain at the depths DEPTHS, strain.width_ratio the width at the last over that at the first
+    strain    of layers, by a field of `grainfield strain` each, on one grid: strain.peaks is the largest number of
+              peaks of the mean vertical strain at the depths DEPTHS, strain.width_ratio the width at the last over
+              that at the first
+    pieces    of an ensemble of layers in pieces of equal size, by their profiles.csv: response.near_axis is the mean
+              pressure on the base within AXIS of the depth about the load, response.largest the largest of the
+              pieces' mean; errors by the scatter of the pieces. response.flamant_rel_l2 is the distance of that mean
+              from the half plane's, as compare.flamant.base.rel_l2
+    centre    of layers, by their profiles.csv: response.centre_over_largest is the pressure on the base below the load
+              over the largest one
     fields    of a heap, by the maps of fields.h5 (means over its piles): inside.bulk, inside.shear, inside.young,
               inside.poisson and inside.fabric_trace are the mean over the points of a column of the map that lie
               deeper than its middle over that of the others
-    summary   of another run of the study: the keys of its summary.json that begin with those of --keys
+    summary   of another run of the study, by its summary.json or its record NAME.json in states/: the keys that begin
+              with those of --keys; with response. among them response.one_peak_to, the share of the depth down to
+              which every profile has one peak
 
 Needs h5py, numpy and scipy.
 """
@@ -33,6 +43,7 @@ import csv
 import json
 import math
 import pathlib
+import re
 import sys
 
 import h5py
@@ -45,6 +56,8 @@ sys.path.insert(0, str(HERE))
 from record import write_file  # noqa: E402
 
 ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.normals_near_30", "angles.order",
+         "angles.strong_near_60", "angles.strong_near_30", "response.near_axis", "response.largest",
+         "response.flamant_rel_l2", "response.centre_over_largest", "response.one_peak_to",
          "gravity.xx_ratio", "gravity.yy_ratio", "gravity.top_over_bottom", "gravity.poured_xx_ratio",
          "gravity.poured_yy_ratio", "forces.middle_over_surface", "forces.centre_over_beside", "strain.peaks",
          "strain.width_ratio", *(f"inside.{name}" for name in ("bulk", "shear", "young", "poisson", "fabric_trace")))
@@ -52,6 +65,7 @@ NEAR = 5.0  # degrees
 BINS = 36
 SKIN, CENTRE, BESIDE, STRONG = 0.2, 0.1, (0.15, 0.4), 0.95
 DEPTHS = (0.25, 0.5, 0.75)
+AXIS = 0.25
 
 
 def order(angles):
@@ -74,12 +88,16 @@ def near(angles, directions):
 def angles_of(run):
     """Figures of the directions of the forces between grains."""
     state = run["unloaded"]["contacts"]
-    bears = (state["j"][:].astype(int) >= 0) & (numpy.linalg.norm(state["force"][:], axis=1) > 0)
+    size = numpy.linalg.norm(state["force"][:], axis=1)
+    bears = (state["j"][:].astype(int) >= 0) & (size > 0)
+    strong = size[bears] > size[bears].mean()
     angles, normals = (numpy.degrees(numpy.arctan2(state[name][:][bears, 1], state[name][:][bears, 0]))
                        for name in ("force", "normal"))
     return {"angles.near_60": near(angles, (0, 60, 120)), "angles.near_30": near(angles, (30, 150)),
             "angles.normals_near_60": near(normals, (0, 60, 120)),
-            "angles.normals_near_30": near(normals, (30, 150)), "angles.order": order(angles)}
+            "angles.normals_near_30": near(normals, (30, 150)), "angles.order": order(angles),
+            "angles.strong_near_60": near(angles[strong], (0, 60, 120)),
+            "angles.strong_near_30": near(angles[strong], (30, 150))}
 
 
 def stress_sums(state):
@@ -137,19 +155,69 @@ def width(places, values):
     return right - left
 
 
-def strain_of(file):
-    """Peaks and widths of the vertical strain of a loaded layer, by the table of a field."""
+def read_table(file):
+    """The rows of a table: {column without its unit: number or text}."""
     lines = [line for line in file.read_text().splitlines() if not line.startswith("#")]
-    rows = [{name.partition(" (")[0]: float(value or "nan") for name, value in row.items()}
-            for row in csv.DictReader(lines)]
-    bottom = min(row["y"] for row in rows)
+    return [{re.sub(r" \(.*|_(m|N/m)$", "", name): value if name == "profile" else float(value or "nan")
+             for name, value in row.items()} for row in csv.DictReader(lines)]
+
+
+def strain_of(files):
+    """Peaks and widths of the mean vertical strain of loaded layers, by the tables of their fields."""
+    tables = [read_table(file) for file in files]
+    places = [(row["x"], row["y"]) for row in tables[0]]
+    if any([(row["x"], row["y"]) for row in table] != places for table in tables):
+        raise ValueError("fields on unlike grids")
+    mean = numpy.mean([[-row["strain_yy"] for row in table] for table in tables], axis=0)
+    heights = numpy.array([y for _, y in places])
     found = []
     for depth in DEPTHS:
-        height = min({row["y"] for row in rows}, key=lambda y: abs(y - depth * bottom))
-        line = sorted((row["x"], -row["strain_yy"]) for row in rows if row["y"] == height)
-        x, values = numpy.array([point for point in line if math.isfinite(point[1])]).T
+        height = heights[numpy.argmin(abs(heights - depth * heights.min()))]
+        line = sorted((x, value) for (x, y), value in zip(places, mean) if y == height and math.isfinite(value))
+        x, values = numpy.array(line).T
         found.append((peaks(values), width(x, values)))
-    return {"strain.peaks": max(n for n, _ in found), "strain.width_ratio": found[-1][1] / found[0][1]}
+    return {"ensemble.realizations": len(files), "strain.peaks": max(n for n, _ in found),
+            "strain.width_ratio": found[-1][1] / found[0][1]}
+
+
+def base_of(file):
+    """The rows of a profiles.csv on the base, and the number of its realizations."""
+    record = json.loads(file.with_name(file.name.replace(".profiles.csv", ".json")).read_text())
+    return ([row for row in read_table(file) if row["profile"] == "base"],
+            record["summary"]["ensemble.realizations"])
+
+
+def column(rows, name):
+    return numpy.array([row[name] for row in rows])
+
+
+def pieces_of(files):
+    """The response on the base of the layers of all pieces, and how many they are."""
+    bases, counts = zip(*map(base_of, files))
+    if len(set(counts)) != 1:
+        raise ValueError("pieces of unlike size")
+    x = column(bases[0], "x")
+    near_axis = abs(x) <= AXIS * bases[0][0]["depth"]
+    values = numpy.array([numpy.interp(x, column(base, "x"), column(base, "simulation")) for base in bases])
+    mean = values.mean(axis=0)
+    out = summarized([{"response.near_axis": one[near_axis].mean(), "response.largest": one[mean.argmax()]}
+                      for one in values])
+    away = mean - numpy.mean([numpy.interp(x, column(base, "x"), column(base, "flamant")) for base in bases], axis=0)
+    out["response.flamant_rel_l2"] = float(math.sqrt((away @ away) / (mean @ mean)))
+    return out | {"ensemble.realizations": sum(counts), "ensemble.pieces": len(files)}
+
+
+def centre_of(file):
+    """The pressure on the base below the load over the largest one."""
+    base, count = base_of(file)
+    x, values, errors = (column(base, name) for name in ("x", "simulation", "standard_error"))
+    at, largest = abs(x).argmin(), values.argmax()
+    out = {"ensemble.realizations": count, "response.centre_over_largest": float(values[at] / values[largest])}
+    if math.isfinite(errors[at]) and at != largest:
+        share = out["response.centre_over_largest"]
+        out["response.centre_over_largest.standard_error"] = float(
+            math.hypot(errors[at], share * errors[largest]) / values[largest])
+    return out
 
 
 def inside(points, values):
@@ -193,8 +261,24 @@ def poured(low, high):
 
 
 def of_summary(summary, beginnings):
-    """The keys of a summary that begin with one of these, and the number of realizations."""
-    return {key: value for key, value in summary.items() if key.startswith((*beginnings, "ensemble.realizations"))}
+    """The keys of a summary, or of a record of runs/next.py, that begin with one of these, and the number of
+    realizations."""
+    summary = summary.get("summary", summary)
+    out = {key: value for key, value in summary.items() if key.startswith((*beginnings, "ensemble.realizations"))}
+    return out | one_peak_to(summary) if "response." in beginnings else out
+
+
+def one_peak_to(summary):
+    """The share of the depth down to which the profiles have one peak; 0 where the first one has more."""
+    found = {float(key.split("depth_")[1].removesuffix(".peaks")): value for key, value in summary.items()
+             if key.startswith("response.depth_") and key.endswith(".peaks")}
+    found[1.0] = summary["response.peaks"]
+    reached = 0.0
+    for depth in sorted(found):
+        if found[depth] != 1:
+            break
+        reached = depth
+    return {"response.one_peak_to": reached}
 
 
 def with_keys(text, added):
@@ -214,8 +298,8 @@ def figures(kind, files, keys):
     if kind == "fields":
         with h5py.File(files[0]) as fields:
             return inside_of(fields) | of_summary(json.loads(files[0].with_name("summary.json").read_text()), ())
-    if kind == "strain":
-        return summarized([strain_of(files[0])])
+    if kind in ("strain", "pieces", "centre"):
+        return {"strain": strain_of, "pieces": pieces_of, "centre": lambda found: centre_of(found[0])}[kind](files)
     found = []
     for file in files:
         of = {"angles": angles_of, "gravity": gravity_of, "forces": forces_of,
@@ -227,7 +311,8 @@ def figures(kind, files, keys):
 
 def main():
     options = argparse.ArgumentParser(description="Measures on states what no summary has.")
-    options.add_argument("kind", choices=("angles", "gravity", "forces", "poured", "fields", "strain", "summary"))
+    options.add_argument("kind", choices=("angles", "gravity", "forces", "poured", "fields", "strain", "pieces", "centre",
+                                                 "summary"))
     options.add_argument("study", help="results/STUDY.json takes the keys")
     options.add_argument("file", type=pathlib.Path, nargs="+")
     options.add_argument("--member", required=True, help="ends the keys")

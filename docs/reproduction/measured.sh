@@ -43,19 +43,46 @@ run fit fit-asymmetric --set "$(set_files pile-asymmetric-line)" --set ensemble.
 measure summary fit-asymmetric fit/summary.json --member line \
   --keys fit.cantelaube_asymmetric_zero.rel_l2 fit.cantelaube_asymmetric_zero.chi2
 
+# The layers of runs/roul-layers.txt, by their states or tables.
+layers=$here/states/roul-layers
+unpack() { [ -e "$1.h5" ] || { xz -dkc "$layers/$1.h5.xz" > "$1.h5.part" && mv "$1.h5.part" "$1.h5"; }; }
+layer() { # STUDY NAME MEMBER
+  measure summary "$1" "$layers/$2.json" --member "$3" --keys response. load.
+  [ ! -e "$layers/$2.profiles.csv" ] || measure centre "$1" "$layers/$2.profiles.csv" --member "$3"
+}
+strain() { # NAME MEMBER REALIZATION ...
+  unpack "$1"
+  local tables=()
+  for k in "${@:3}"; do
+    "$program" strain "$1.h5:realization_00$k"/{unloaded,loaded} --measure derivative --frame layer --grid 161x33 \
+      -o "$1-$k.csv"
+    tables+=("$1-$k.csv")
+  done
+  measure strain point-load-mono "${tables[@]}" --member "$2"
+}
+layer point-load-mono mono_0.3 force_0.3
+layer point-load-mono mono_300 force_300
+for force in 3 300; do layer point-load-mono mono_$force-varied varied_$force; done
+for mu in 0.3 0.6 0.9; do
+  layer point-load-friction friction_$mu friction_$mu
+  layer point-load-friction friction_$mu-varied varied_$mu
+done
+for one in 0{3,8}_{3,30,100,300}; do layer point-load-load load_$one-varied varied_$one; done
+layer point-load-pentagons pentagons layers_24
+layer point-load-bidisperse bidisperse_100 force_100
+for floor in smooth rough; do
+  measure pieces point-load-polydisperse "$layers/$floor"-*.profiles.csv --member pieces_$floor
+done
+unpack mono_300 && measure angles point-load-mono mono_300.h5 --member packing
+unpack friction_0.3 && measure angles point-load-friction friction_0.3.h5 --member packing
+strain mono_rough_3 rough_3 0
+strain mono_rough_300 rough_300 0
+strain mono_rough_3-varied rough_3_varied {0..7}
+
 flamant='compare.models=["flamant"]'
-run mono point-load-mono --set "$flamant" --set 'sweep.values=[3]'
-measure angles point-load-mono mono/force_3/snapshots.h5 --member packing
-run friction point-load-friction --set "$flamant" --set 'sweep.values=[0.3]'
-measure angles point-load-friction friction/friction_0.3/snapshots.h5 --member packing
 run pentagons point-load-pentagons --set "$flamant" --set $four
 measure angles point-load-pentagons pentagons/snapshots.h5 --member packing
 run polydisperse point-load-polydisperse --set "$flamant" --set $four --set 'sweep.values=["smooth"]'
 measure angles point-load-polydisperse polydisperse/floor_smooth/snapshots.h5 --member packing
 run bidisperse point-load-bidisperse --set "$flamant" --set ensemble.realizations=2
 measure angles point-load-bidisperse bidisperse/snapshots.h5 --member packing
-
-run rough point-load-mono --set packing.floor=rough --set "$flamant" --set 'sweep.values=[3,300]'
-layer=rough/force_3/snapshots.h5:realization_000
-"$program" strain $layer/unloaded $layer/loaded --measure derivative --frame layer --grid 161x33 -o strain.csv
-measure strain point-load-mono strain.csv --member rough_3

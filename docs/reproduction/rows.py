@@ -282,6 +282,15 @@ def _spread(row: Row, results: Results) -> str | None:
     return f"{'large' if share > 1 else 'small'}: a single one scatters by {share:.1f} of the mean"
 
 
+def _deeper(row: Row, results: Results) -> str | None:
+    """Whether the second of a pair of shares of the depth is larger than the first."""
+    pair = _pair(row, results)
+    if pair is None:
+        return None
+    first, second = (one.value for one in pair)
+    return f"{'deeper' if second > first else 'not deeper'}: to {first:g} and to {second:g} of the depth"
+
+
 def _growth(row: Row, results: Results) -> str | None:
     """Power of the depth with which the width grows, as load over largest response, between two depths."""
     dot = f".{row['member']}" if "member" in row else ""
@@ -319,6 +328,7 @@ RULES: dict[str, Rule] = {
     "turning soft": _turning_soft,
     "static friction": _static_friction,
     "spread": _spread,
+    "deeper": _deeper,
     "growth": _growth,
     "nearer": _nearer,
 }
@@ -348,6 +358,7 @@ RULE_BANDS = {
     "turning soft": "all at rest, 90 % of them soft",
     "static friction": "no rest without it",
     "spread": "above the mean",
+    "deeper": "at one of the depths of 0.1 to 0.9 more",
     "growth": "power of 0.75 to 1.25",
     "nearer": "by the largest difference",
 }

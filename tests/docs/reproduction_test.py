@@ -416,6 +416,9 @@ def test_directions_of_forces_by_hand():
     contacts = [(0, 1 if k < 5 else -1, one, (0, 0, 0)) for k, one in enumerate(force)]
     found = measure.angles_of({"unloaded": heap([(0, 0, 0), (1, 0, 0)], contacts)})
     assert found["angles.near_60"] == 0.75 and found["angles.near_30"] == 0.25
+    strong = contacts[:4] + [(0, 1, (2, 0, 0), (0, 0, 0))]  # the mean is 1.2
+    found = measure.angles_of({"unloaded": heap([(0, 0, 0), (1, 0, 0)], strong)})
+    assert found["angles.strong_near_60"] == 1 and found["angles.near_60"] == 0.8
     assert measure.order(measure.numpy.full(40, 12.0)) == 1
     even = measure.numpy.random.default_rng(1).uniform(0, 360, (40, 500))
     assert abs(measure.numpy.mean([measure.order(one) for one in even])) < 1e-3  # 0.010 without Miller's term
@@ -459,11 +462,70 @@ def test_growth_inwards_by_hand():
 
 def test_peaks_and_widths_of_strains_by_hand(tmp_path):
     table = tmp_path / "field.csv"
-    lines = {-1: [0, 0, 4, 0, 0], -2: [0, 3, 2, 2.9, 0], -3: [2, 2, 2.1, 2, 2], -4: [0, 0, 0, 0, 0]}
-    table.write_text("# a field\nx,y,strain_yy\n" + "".join(
-        f"{x},{y},{-value}\n" for y, values in lines.items() for x, value in zip(range(-2, 3), values)))
-    assert measure.strain_of(table) == {"strain.peaks": 2, "strain.width_ratio": 4}
+
+    def write(file, lines):
+        file.write_text("# a field\nx,y,strain_yy\n" + "".join(
+            f"{x},{y},{-value}\n" for y, values in lines.items() for x, value in zip(range(-2, 3), values)))
+
+    write(table, {-1: [0, 0, 4, 0, 0], -2: [0, 3, 2, 2.9, 0], -3: [2, 2, 2.1, 2, 2], -4: [0, 0, 0, 0, 0]})
+    assert measure.strain_of([table]) == {"ensemble.realizations": 1, "strain.peaks": 2, "strain.width_ratio": 4}
+    # The dent of one layer is a hump of the other.
+    write(other := tmp_path / "other.csv", {-1: [0, 0, 4, 0, 0], -2: [0, 3, 6, 3, 0], -3: [2, 2, 2.1, 2, 2],
+                                            -4: [0, 0, 0, 0, 0]})
+    assert measure.strain_of([table, other])["strain.peaks"] == 1
+    write(other, {-1: [0, 0, 4, 0, 0], -2: [0, 3, 6, 3, 0]})
+    with pytest.raises(ValueError, match="unlike grids"):
+        measure.strain_of([table, other])
     assert measure.width(measure.numpy.arange(5.0), measure.numpy.array([0, 3, 2, 3, 0.0])) == pytest.approx(3)
+
+
+def layer_piece(folder, name, realizations, base):
+    """A piece of an ensemble: x, pressure, error and the half plane's on a base 4 m deep; depths do not count."""
+    (folder / f"{name}.json").write_text(json.dumps({"summary": {"ensemble.realizations": realizations}}))
+    file = folder / f"{name}.profiles.csv"
+    file.write_text("# layers\nprofile,depth_m,x_m,simulation_N/m,standard_error_N/m,flamant_N/m\n"
+                    "depth_0.5,2,0,99,9,99\n" + "".join(
+                        f"base,4,{x},{value},{error},{model}\n" for x, value, error, model in base))
+    return file
+
+
+def test_an_ensemble_in_pieces_by_hand(tmp_path):
+    one = layer_piece(tmp_path, "one", 3, [(-2, 1, 0, 1), (-1, 2, 0, 2), (0, 4, 0, 3), (1, 3, 0, 2), (2, 0, 0, 0)])
+    two = layer_piece(tmp_path, "two", 3, [(-2, 1, 0, 1), (-1, 4, 0, 2), (0, 2, 0, 3), (1, 6, 0, 2), (2, 0, 0, 0)])
+    found = measure.pieces_of([one, two])
+    assert found == pytest.approx({
+        "ensemble.realizations": 6, "ensemble.pieces": 2, "response.near_axis": 3.5, "response.largest": 4.5,
+        "response.near_axis.standard_error": 0.5, "response.largest.standard_error": 1.5,
+        "response.flamant_rel_l2": (7.25 / 39.25) ** 0.5})  # of 1, 3, 3, 4.5, 0 from 1, 2, 3, 2, 0
+    with pytest.raises(ValueError, match="unlike size"):
+        measure.pieces_of([one, layer_piece(tmp_path, "three", 4, [(0, 1, 0, 1)])])
+
+
+def test_pieces_not_layers_give_the_freedom_of_an_error(tmp_path):
+    (tmp_path / "s.json").write_text(json.dumps({
+        "k.a": 1, "k.standard_error.a": 0.1, "ensemble.realizations.a": 24, "ensemble.pieces.a": 2}))
+    results = Results(tmp_path)
+    assert results.number("s", "k", "a").freedom == 1 and results.realizations("s", "a") == 24
+
+
+def test_the_response_below_the_load_by_hand(tmp_path):
+    file = layer_piece(tmp_path, "dip", 8, [(-1, 4, 0.3, 1), (0, 2, 0.2, 1), (1, 3.9, 0.3, 1)])
+    assert measure.centre_of(file) == pytest.approx({
+        "ensemble.realizations": 8, "response.centre_over_largest": 0.5,
+        "response.centre_over_largest.standard_error": (0.2**2 + (0.5 * 0.3) ** 2) ** 0.5 / 4})
+    top = layer_piece(tmp_path, "peak", 8, [(-1, 1, 0.3, 1), (0, 2, 0.2, 1), (1, 1, 0.3, 1)])
+    assert measure.centre_of(top)["response.centre_over_largest"] == 1
+
+
+def test_down_to_which_depth_there_is_one_peak():
+    peaks = {"response.depth_0.25.peaks": 1, "response.depth_0.5.peaks": 1, "response.depth_0.75.peaks": 3}
+    assert measure.one_peak_to(peaks | {"response.peaks": 1}) == {"response.one_peak_to": 0.5}
+    assert measure.one_peak_to(peaks | {"response.peaks": 1, "response.depth_0.25.peaks": 2}) == {
+        "response.one_peak_to": 0}
+    assert measure.one_peak_to({"response.depth_0.5.peaks": 1, "response.peaks": 1}) == {"response.one_peak_to": 1}
+    record = {"summary": {"response.peaks": 2, "response.depth_0.5.peaks": 1, "ensemble.realizations": 8, "load.x": 3}}
+    assert measure.of_summary(record, ["response."]) == {
+        "response.peaks": 2, "response.depth_0.5.peaks": 1, "ensemble.realizations": 8, "response.one_peak_to": 0.5}
 
 
 def test_measured_keys_replace_their_older_ones():
