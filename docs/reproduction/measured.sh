@@ -29,8 +29,27 @@ for g in 5 20; do
 done
 measure poured pile-point-source poured-{5,20}/sleeping/snapshots.h5 --member grains_100
 
-run inside pile-fields --set "$(set_files pile-point-source-2000)" --set $four --set 'change.gravity=[8.829]'
-measure fields pile-fields inside/fields.h5 --member fields_2000
+measure network pile-fields pile-point-source-2000.h5 --member grains_2000
+/usr/bin/python3 - <<'END'
+import h5py
+with h5py.File("pile-point-source-2000.h5") as states:
+    for name in states:
+        with h5py.File(f"pile-{int(name[-3:])}.h5", "w") as one:
+            states.copy(name, one, name="realization_000")
+END
+for k in {0..7}; do
+  run inside-$k pile-fields --set "$(set_files pile-$k)" --set ensemble.realizations=1 --set 'change.gravity=[8.829]'
+done
+measure fields pile-fields inside-{0..7}/fields.h5 --member fields_2000
+sizes() { # NAME PILE ...: the size of an RVE by these piles
+  local files
+  files=$(printf '"inside-%s/snapshots.h5",' "${@:2}")
+  run "$1" pile-fields --set "grains.files=[${files%,}]" --set ensemble.realizations=$(($# - 1)) \
+    --set 'change.gravity=[8.829]' --set 'fields.topics=["rve_size"]'
+}
+sizes rve-all {0..7}
+for k in {0..7}; do sizes rve-$k $(seq 0 7 | grep -v $k); done
+measure rve pile-fields rve-{all,0,1,2,3,4,5,6,7}/summary.json --member fields_2000
 run equal pile-fields --quick --set shape.polydispersity=0 --set source.grains=150 --set source.height=0.15 \
   --set ensemble.realizations=3 --set 'change.gravity=[8.829]'
 measure summary pile-fields equal/summary.json --member equal_150 --keys fabric.g2

@@ -1,6 +1,7 @@
 """docs/reproduction.md is what its script makes, and the script judges by the rules that the page states."""
 import base64
 import json
+import math
 import re
 import sys
 from pathlib import Path
@@ -176,6 +177,9 @@ def test_agreement_by_its_rule():
     # A ratio that cannot tell 1.09 from 1 says nothing, although its range holds 1.09.
     ratio = {"range": [1.08, 1.10]}
     assert agreement(Measured(1.09, 0.05), ratio) == "agrees"
+    # A range without an end has no middle: the whole interval lies in it, or nothing is said.
+    assert agreement(Measured(1.2, 0.05), {"range": [1, float("inf")]}) == "agrees"
+    assert agreement(Measured(1.2, 0.2), {"range": [1, float("inf")]}) == "spread too wide to tell"
     assert agreement(Measured(1.09, 0.05), ratio | {"effect": 0.09}) == "spread too wide to tell"
     assert agreement(Measured(1.085, 0.02), ratio | {"effect": 0.09}) == "agrees"
 
@@ -450,6 +454,76 @@ def test_forces_inside_a_heap_by_hand():
     found = measure.forces_of({"pile/contacts": contacts, "pile/grains/position": measure.numpy.array(places, dtype=float)})
     assert found["forces.centre_over_beside"] == 0.5
     assert 2 < found["forces.middle_over_surface"] < 3
+
+
+def test_forces_that_hold_a_heap_by_hand():
+    """Three grains on a floor, 1 on both others; 3 hangs on 0 alone, and without it 4 has one contact."""
+    state = heap([(0, 0, 0), (2, 0, 0), (1, 2, 0), (-2, 0, 0), (-4, 0, 0)],
+                 [(0, -1, (0, 1, 0), (0, -1, 0)), (1, -1, (0, 1, 0), (2, -1, 0)), (2, 0, (0, 1, 0), (0, 0, 0)),
+                  (2, 1, (0, 1, 0), (0, 0, 0)), (0, 1, (1, 0, 0), (1, 0, 0)), (3, 4, (1, 0, 0), (0, 0, 0)),
+                  (4, 3, (0, 0, 0), (0, 0, 0)), (3, 0, (1, 0, 0), (0, 0, 0))])
+    state["contacts"]["sliding"] = measure.numpy.array([0, 1, 0, 0, 0, 1, 1, 0])
+    state["contacts"]["normal_force"] = measure.numpy.array([1, 1, 1, 1, 1, 1, 0, 1.0])
+    state["grains/volume"] = measure.numpy.full(5, 3.0)
+    assert measure.network_of({"pile": state})["network.components_over_equations"] == 9 / 9
+
+
+def test_contacts_that_grow_as_the_theory_says_have_its_g2():
+    """Equal grains have 1; in rows deep enough the theory's own numbers of contacts give its g2."""
+    places = [(x, y, 0) for y in range(20) for x in range(8)]
+    state = heap(places, [(k, (k + 1) % 160, (0, 1, 0), (0, 0, 0)) for k in range(160)])
+    state["contacts"] |= {"sliding": measure.numpy.zeros(160), "normal_force": measure.numpy.ones(160)}
+    state["grains/volume"] = measure.numpy.full(160, math.pi / 4)
+    found = measure.network_of({"pile": state})
+    assert found["network.g2"] == pytest.approx(1) and found["network.g2_over_theory"] == pytest.approx(1)
+    # Two sizes and as many contacts of each: (mean area)/(mean area) is 1, the theory's is above.
+    state["grains/volume"] = measure.numpy.where(measure.numpy.arange(160) % 2, 1.0, 0.5) * math.pi / 4
+    found = measure.network_of({"pile": state})
+    assert found["network.g2"] == pytest.approx(1) and found["network.g2_over_theory"] < 0.99
+
+
+def test_a_bent_relation_of_maps_by_hand():
+    places = measure.numpy.array([-1.0, 0, 1, NAN])
+    bent = [1 + 2 * places + 0.5 * places**2, 3 - places, places + 0.2 * places**2]
+    bend = 0.5 / 2 * measure.numpy.std([-1, 0, 1])
+    found = measure.curvatures(measure.numpy.array([[places, *bent]] * 3))
+    assert found["curvature.bulk"] == pytest.approx(bend) and found["curvature.bulk.standard_error"] < 1e-12
+    assert found["curvature.shear"] == pytest.approx(0, abs=1e-12)
+    # Two heaps whose bends are b and 3 b: the jackknife of a mean, half of their distance.
+    other = [1 + 2 * places + 1.5 * places**2, *bent[1:]]
+    found = measure.curvatures(measure.numpy.array([[places, *bent], [places, *other]]))
+    assert found["curvature.bulk"] == pytest.approx(2 * bend)
+    assert found["curvature.bulk.standard_error"] == pytest.approx(bend)
+
+
+def test_strains_along_the_base_keep_their_signs():
+    points = measure.numpy.array([(0, -1), (1, -1), (2, -1), (0, 0)], dtype=float)
+    values, others = measure.numpy.array([-1.0, -2, NAN, 9]), measure.numpy.array([-2.0, -2, -5, 1])
+    assert measure.along_base(points, values, others) == 0.75
+
+
+def test_sizes_of_rves_without_one_heap(tmp_path):
+    def run(stress, strain):
+        return {"ensemble.realizations": 3, "rve_size.stress_grains": stress, "rve_size.strain_grains": strain,
+                "rve_size.fabric_grains": 20}
+
+    found = measure.sizes_of(run(150, 150), run(110, 60), run(190, None))
+    assert found["rve_size.stress_grains.least"] == 110 and found["rve_size.strain_grains.most"] == math.inf
+    (tmp_path / "s.json").write_text(json.dumps({f"{key}.m": value for key, value in found.items()
+                                                 if value != math.inf} | {"rve_size.strain_grains.most.m": "inf"}))
+    row = {"study": "s", "member": "m", "rule": "grains needed", "sizes": [100, 200], "agrees": ["within"]}
+    said = {name: judged(row | {"key": f"rve_size.{name}_grains"}, Results(tmp_path)) for name in ("stress", "strain",
+                                                                                                   "fabric")}
+    assert said["stress"] == ("within: 150 grains, 110 to 190 without one heap", "agrees")
+    assert said["strain"] == ("between: 150 grains, 60 to inf without one heap", "spread too wide to tell")
+    assert said["fabric"] == ("fewer: 20 grains, 20 to 20 without one heap", "differs")
+
+
+def test_one_peak_reaches_deeper_by_hand(tmp_path):
+    (tmp_path / "s.json").write_text('{"k.a": 0.2, "k.b": 0.4}')
+    row = {"study": "s", "rule": "deeper", "key": "k", "from": "a", "to": "b", "agrees": ["deeper"]}
+    assert judged(row, Results(tmp_path)) == ("deeper: to 0.2 and to 0.4 of the depth", "agrees")
+    assert judged(row | {"from": "b"}, Results(tmp_path)) == ("not deeper: to 0.4 and to 0.4 of the depth", "differs")
 
 
 def test_growth_inwards_by_hand():
