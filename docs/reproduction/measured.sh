@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # measured.sh PROGRAM FOLDER: makes the runs in FOLDER and measures again what measure.py has added to results/.
-# Half an hour of processor time. The stored values are of grainfield 0.9.0 (4f4be8ee).
+# Half an hour of processor time. The stored values are of grainfield 0.9.0 (4f4be8ee; of layers and of single piles of
+# 2,000 grains 915d9e90).
 set -euo pipefail
 program=$(realpath "$1")
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -41,14 +42,16 @@ for k in {0..7}; do
   run inside-$k pile-fields --set "$(set_files pile-$k)" --set ensemble.realizations=1 --set 'change.gravity=[8.829]'
 done
 measure fields pile-fields inside-{0..7}/fields.h5 --member fields_2000
-sizes() { # NAME PILE ...: the size of an RVE by these piles
+topic() { # TOPIC NAME PILE ...: one topic by these piles
   local files
-  files=$(printf '"inside-%s/snapshots.h5",' "${@:2}")
-  run "$1" pile-fields --set "grains.files=[${files%,}]" --set ensemble.realizations=$(($# - 1)) \
-    --set 'change.gravity=[8.829]' --set 'fields.topics=["rve_size"]'
+  files=$(printf '"inside-%s/snapshots.h5",' "${@:3}")
+  run "$2" pile-fields --set "grains.files=[${files%,}]" --set ensemble.realizations=$(($# - 2)) \
+    --set 'change.gravity=[8.829]' --set "fields.topics=[\"$1\"]"
 }
-sizes rve-all {0..7}
-for k in {0..7}; do sizes rve-$k $(seq 0 7 | grep -v $k); done
+topic forces tail {0..7}
+measure summary pile-fields tail/summary.json --member fields_2000 --keys forces.tail
+topic rve_size rve-all {0..7}
+for k in {0..7}; do topic rve_size rve-$k $(seq 0 7 | grep -v $k); done
 measure rve pile-fields rve-{all,0,1,2,3,4,5,6,7}/summary.json --member fields_2000
 run equal pile-fields --quick --set shape.polydispersity=0 --set source.grains=150 --set source.height=0.15 \
   --set ensemble.realizations=3 --set 'change.gravity=[8.829]'
