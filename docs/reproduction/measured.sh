@@ -42,6 +42,11 @@ for k in {0..7}; do
   run inside-$k pile-fields --set "$(set_files pile-$k)" --set ensemble.realizations=1 --set 'change.gravity=[8.829]'
 done
 measure fields pile-fields inside-{0..7}/fields.h5 --member fields_2000
+for k in {0..7}; do
+  run narrow-$k pile-fields --set "grains.files=[\"inside-$k/snapshots.h5\"]" --set ensemble.realizations=1 \
+    --set 'change.gravity=[8.829]' --set fields.rve_diameters=3
+done
+measure fields pile-fields narrow-{0..7}/fields.h5 --member narrow_2000
 topic() { # TOPIC NAME PILE ...: one topic by these piles
   local files
   files=$(printf '"inside-%s/snapshots.h5",' "${@:3}")
