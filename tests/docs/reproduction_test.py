@@ -489,11 +489,11 @@ def test_a_bent_relation_of_maps_by_hand():
     found = measure.curvatures(measure.numpy.array([[places, *bent]] * 3))
     assert found["curvature.bulk"] == pytest.approx(bend) and found["curvature.bulk.standard_error"] < 1e-12
     assert found["curvature.shear"] == pytest.approx(0, abs=1e-12)
-    # Two heaps whose bends are b and 3 b: the jackknife of a mean, half of their distance.
-    other = [1 + 2 * places + 1.5 * places**2, *bent[1:]]
-    found = measure.curvatures(measure.numpy.array([[places, *bent], [places, *other]]))
-    assert found["curvature.bulk"] == pytest.approx(2 * bend)
-    assert found["curvature.bulk.standard_error"] == pytest.approx(bend)
+    # Three heaps whose bends are b, 3 b and 5 b: the jackknife of a mean is its standard error.
+    others = [[places, 1 + 2 * places + times * 0.5 * places**2, *bent[1:]] for times in (3, 5)]
+    found = measure.curvatures(measure.numpy.array([[places, *bent], *others]))
+    assert found["curvature.bulk"] == pytest.approx(3 * bend)
+    assert found["curvature.bulk.standard_error"] == pytest.approx(2 * bend / 3**0.5)
 
 
 def test_strains_along_the_base_keep_their_signs():
