@@ -70,14 +70,16 @@ run fit fit-asymmetric --set "$(set_files pile-asymmetric-line)" --set ensemble.
 measure summary fit-asymmetric fit/summary.json --member line \
   --keys fit.cantelaube_asymmetric_zero.rel_l2 fit.cantelaube_asymmetric_zero.chi2
 
-# The layers of runs/roul-layers.txt, by their states or tables.
+# The layers of runs/roul-layers.txt, by their states or tables, of the runs that are there.
 layers=$here/states/roul-layers
 unpack() { [ -e "$1.h5" ] || { xz -dkc "$layers/$1.h5.xz" > "$1.h5.part" && mv "$1.h5.part" "$1.h5"; }; }
 layer() { # STUDY NAME MEMBER
+  [ -e "$layers/$2.json" ] || return 0
   measure summary "$1" "$layers/$2.json" --member "$3" --keys response. load.
   [ ! -e "$layers/$2.profiles.csv" ] || measure centre "$1" "$layers/$2.profiles.csv" --member "$3"
 }
 strain() { # NAME MEMBER REALIZATION ...
+  [ -e "$layers/$1.json" ] || return 0
   unpack "$1"
   local tables=()
   for k in "${@:3}"; do
@@ -98,7 +100,8 @@ for one in 0{3,8}_{3,30,100,300}; do layer point-load-load load_$one-varied vari
 layer point-load-pentagons pentagons layers_24
 layer point-load-bidisperse bidisperse_100 force_100
 for floor in smooth rough; do
-  measure pieces point-load-polydisperse "$layers/$floor"-*.profiles.csv --member pieces_$floor
+  [ ! -e "$layers/$floor-1.json" ] ||
+    measure pieces point-load-polydisperse "$layers/$floor"-*.profiles.csv --member pieces_$floor
 done
 unpack mono_300 && measure angles point-load-mono mono_300.h5 --member packing
 unpack friction_0.3 && measure angles point-load-friction friction_0.3.h5 --member packing
