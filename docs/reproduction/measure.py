@@ -8,7 +8,8 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
 
     angles    of the packing before it is loaded: angles.near_60 and angles.near_30 are the shares of the contact
               forces within NEAR of a multiple of 60 degrees, and of 30 degrees from the horizontal,
-              angles.normals_near_60 and angles.normals_near_30 those of the contacts' normals; angles.order is 1
+              angles.normals_near_60 and angles.normals_near_30 those of the contacts' normals,
+              angles.strong_near_60 and angles.strong_near_30 those of the forces above the mean; angles.order is 1
               less the entropy of the forces' histogram (BINS over 180 degrees) over that of an even one
     gravity   of a heap under changed gravity, by the sum over contacts of force times branch: gravity.xx_ratio and
               gravity.yy_ratio are sigma at 20 m/s2 over that at 5; gravity.top_over_bottom is the mean
@@ -17,14 +18,32 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
               deeper than SKIN of the height, over that nearer to the surface; forces.centre_over_beside is the STRONG
               quantile of the forces in the lower half of the height within CENTRE half bases of the axis over
               that within BESIDE
+    network   of a heap's grains with two contacts or more: network.components_over_equations is the number of force
+              components, of which a sliding contact has one, over that of equations of equilibrium (isostatic: 1).
+              network.g2 is tr F over nu c of the grains DEEP mean diameters from surface and floor, and
+              network.g2_over_theory that over its value by the contacts that fit on a grain (Luding)
     poured    of heaps poured under 5 m/s2 and, in a second file, under 20: gravity.poured_xx_ratio and
               gravity.poured_yy_ratio, the mean of the second over that of the first, by the same sums
-    strain    of a layer, by a field of `grainfield strain`: strain.peaks is the largest number of peaks of its
-              vertical strain at the depths DEPTHS, strain.width_ratio the width at the last over that at the first
-    fields    of a heap, by the maps of fields.h5 (means over its piles): inside.bulk, inside.shear, inside.young,
-              inside.poisson and inside.fabric_trace are the mean over the points of a column of the map that lie
-              deeper than its middle over that of the others
-    summary   of another run of the study: the keys of its summary.json that begin with those of --keys
+    strain    of layers, by a field of `grainfield strain` each, on one grid: strain.peaks is the largest number of
+              peaks of the mean vertical strain at the depths DEPTHS, strain.width_ratio the width at the last over
+              that at the first
+    pieces    of an ensemble of layers in pieces of equal size, by their profiles.csv: response.near_axis is the mean
+              pressure on the base within AXIS of the depth about the load, response.largest the largest of the
+              pieces' mean; errors by the scatter of the pieces. response.flamant_rel_l2 is the distance of that mean
+              from the half plane's, as compare.flamant.base.rel_l2
+    centre    of layers, by their profiles.csv: response.centre_over_largest is the pressure on the base below the load
+              over the largest one
+    fields    of heaps, by the maps of a fields.h5 of each: inside.bulk, inside.shear, inside.young, inside.poisson
+              and inside.fabric_trace are the mean over the points of a column of the map that lie deeper than its
+              middle over that of the others; curvature.bulk, curvature.shear and curvature.young are those of the
+              constant against tr F over the points of the mean maps: the quadratic over the linear term at one
+              standard deviation, its error by the jackknife; signed.cundall, signed.liao and signed.derivative are the sum of that vertical strain along the lowest
+              row of the map over that of Cambou's
+    rve       of heaps, by the summary.json of a run of all and of a run without each of them: the grains that an RVE
+              needs, rve_size.*_grains, with the .least and the .most without one heap
+    summary   of another run of the study, by its summary.json or its record NAME.json in states/: the keys that begin
+              with those of --keys; with response. among them response.one_peak_to, the share of the depth down to
+              which every profile has one peak
 
 Needs h5py, numpy and scipy.
 """
@@ -33,6 +52,7 @@ import csv
 import json
 import math
 import pathlib
+import re
 import sys
 
 import h5py
@@ -44,14 +64,22 @@ sys.path.insert(0, str(HERE))
 
 from record import write_file  # noqa: E402
 
+CONSTANTS = ("bulk", "shear", "young")
 ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.normals_near_30", "angles.order",
+         "angles.strong_near_60", "angles.strong_near_30", "response.near_axis", "response.largest",
+         "response.flamant_rel_l2", "response.centre_over_largest", "response.one_peak_to",
+         "network.components_over_equations", "network.g2", "network.g2_over_theory",
          "gravity.xx_ratio", "gravity.yy_ratio", "gravity.top_over_bottom", "gravity.poured_xx_ratio",
          "gravity.poured_yy_ratio", "forces.middle_over_surface", "forces.centre_over_beside", "strain.peaks",
-         "strain.width_ratio", *(f"inside.{name}" for name in ("bulk", "shear", "young", "poisson", "fabric_trace")))
+         "strain.width_ratio", *(f"inside.{name}" for name in ("bulk", "shear", "young", "poisson", "fabric_trace")),
+         *(f"curvature.{name}" for name in CONSTANTS),
+         *(f"signed.{name}" for name in ("cundall", "liao", "derivative")))
 NEAR = 5.0  # degrees
 BINS = 36
 SKIN, CENTRE, BESIDE, STRONG = 0.2, 0.1, (0.15, 0.4), 0.95
 DEPTHS = (0.25, 0.5, 0.75)
+AXIS = 0.25
+DEEP = 2
 
 
 def order(angles):
@@ -74,12 +102,16 @@ def near(angles, directions):
 def angles_of(run):
     """Figures of the directions of the forces between grains."""
     state = run["unloaded"]["contacts"]
-    bears = (state["j"][:].astype(int) >= 0) & (numpy.linalg.norm(state["force"][:], axis=1) > 0)
+    size = numpy.linalg.norm(state["force"][:], axis=1)
+    bears = (state["j"][:].astype(int) >= 0) & (size > 0)
+    strong = size[bears] > size[bears].mean()
     angles, normals = (numpy.degrees(numpy.arctan2(state[name][:][bears, 1], state[name][:][bears, 0]))
                        for name in ("force", "normal"))
     return {"angles.near_60": near(angles, (0, 60, 120)), "angles.near_30": near(angles, (30, 150)),
             "angles.normals_near_60": near(normals, (0, 60, 120)),
-            "angles.normals_near_30": near(normals, (30, 150)), "angles.order": order(angles)}
+            "angles.normals_near_30": near(normals, (30, 150)), "angles.order": order(angles),
+            "angles.strong_near_60": near(angles[strong], (0, 60, 120)),
+            "angles.strong_near_30": near(angles[strong], (30, 150))}
 
 
 def stress_sums(state):
@@ -123,6 +155,36 @@ def forces_of(run):
             "forces.centre_over_beside": centre / beside}
 
 
+def network_of(run):
+    """How many forces hold a heap, and how the contacts of its grains grow with their size."""
+    state = run["pile"]
+    contacts, volumes, places = state["contacts"], state["grains/volume"][:], state["grains/position"][:]
+    i, j, sliding = (contacts[name][:].astype(int) for name in ("i", "j", "sliding"))
+    bears = contacts["normal_force"][:] > 0
+
+    def numbers(of):
+        ends = numpy.concatenate((i[of], j[of & (j >= 0)]))
+        return numpy.bincount(ends, minlength=len(volumes))
+
+    left = bears
+    while True:  # without grains of one contact, and those that this leaves with one
+        alive = numbers(left) >= 2
+        less = left & alive[i] & ((j < 0) | alive[j])
+        if less.sum() == left.sum():
+            break
+        left = less
+    found = {"network.components_over_equations": (2 * left.sum() - sliding[left].sum()) / (3 * alive.sum())}
+    radii = numpy.sqrt(volumes / math.pi)
+    skin = 2 * DEEP * radii.mean()
+    deep = (surface(places) - places[:, 1] > skin) & (places[:, 1] - places[:, 1].min() > skin)
+    if not deep.any():
+        return found
+    cover = 1 / numpy.arcsin(1 / (1 + radii[deep] / radii[deep].mean()))
+    measured, theory = (float(volumes[deep] @ one / volumes[deep].sum() / one.mean())
+                        for one in (numbers(bears)[deep], cover))
+    return found | {"network.g2": measured, "network.g2_over_theory": measured / theory}
+
+
 def peaks(values):
     """Number of maxima of at least half of the largest value that rise by a tenth of it."""
     return len(find_peaks([0.0, *values, 0.0], height=values.max() / 2, prominence=values.max() / 10)[0])
@@ -137,19 +199,69 @@ def width(places, values):
     return right - left
 
 
-def strain_of(file):
-    """Peaks and widths of the vertical strain of a loaded layer, by the table of a field."""
+def read_table(file):
+    """The rows of a table: {column without its unit: number or text}."""
     lines = [line for line in file.read_text().splitlines() if not line.startswith("#")]
-    rows = [{name.partition(" (")[0]: float(value or "nan") for name, value in row.items()}
-            for row in csv.DictReader(lines)]
-    bottom = min(row["y"] for row in rows)
+    return [{re.sub(r" \(.*|_(m|N/m)$", "", name): value if name == "profile" else float(value or "nan")
+             for name, value in row.items()} for row in csv.DictReader(lines)]
+
+
+def strain_of(files):
+    """Peaks and widths of the mean vertical strain of loaded layers, by the tables of their fields."""
+    tables = [read_table(file) for file in files]
+    places = [(row["x"], row["y"]) for row in tables[0]]
+    if any([(row["x"], row["y"]) for row in table] != places for table in tables):
+        raise ValueError("fields on unlike grids")
+    mean = numpy.mean([[-row["strain_yy"] for row in table] for table in tables], axis=0)
+    heights = numpy.array([y for _, y in places])
     found = []
     for depth in DEPTHS:
-        height = min({row["y"] for row in rows}, key=lambda y: abs(y - depth * bottom))
-        line = sorted((row["x"], -row["strain_yy"]) for row in rows if row["y"] == height)
-        x, values = numpy.array([point for point in line if math.isfinite(point[1])]).T
+        height = heights[numpy.argmin(abs(heights - depth * heights.min()))]
+        line = sorted((x, value) for (x, y), value in zip(places, mean) if y == height and math.isfinite(value))
+        x, values = numpy.array(line).T
         found.append((peaks(values), width(x, values)))
-    return {"strain.peaks": max(n for n, _ in found), "strain.width_ratio": found[-1][1] / found[0][1]}
+    return {"ensemble.realizations": len(files), "strain.peaks": max(n for n, _ in found),
+            "strain.width_ratio": found[-1][1] / found[0][1]}
+
+
+def base_of(file):
+    """The rows of a profiles.csv on the base, and the number of its realizations."""
+    record = json.loads(file.with_name(file.name.replace(".profiles.csv", ".json")).read_text())
+    return ([row for row in read_table(file) if row["profile"] == "base"],
+            record["summary"]["ensemble.realizations"])
+
+
+def column(rows, name):
+    return numpy.array([row[name] for row in rows])
+
+
+def pieces_of(files):
+    """The response on the base of the layers of all pieces, and how many they are."""
+    bases, counts = zip(*map(base_of, files))
+    if len(set(counts)) != 1:
+        raise ValueError("pieces of unlike size")
+    x = column(bases[0], "x")
+    near_axis = abs(x) <= AXIS * bases[0][0]["depth"]
+    values = numpy.array([numpy.interp(x, column(base, "x"), column(base, "simulation")) for base in bases])
+    mean = values.mean(axis=0)
+    out = summarized([{"response.near_axis": one[near_axis].mean(), "response.largest": one[mean.argmax()]}
+                      for one in values])
+    away = mean - numpy.mean([numpy.interp(x, column(base, "x"), column(base, "flamant")) for base in bases], axis=0)
+    out["response.flamant_rel_l2"] = float(math.sqrt((away @ away) / (mean @ mean)))
+    return out | {"ensemble.realizations": sum(counts), "ensemble.pieces": len(files)}
+
+
+def centre_of(file):
+    """The pressure on the base below the load over the largest one."""
+    base, count = base_of(file)
+    x, values, errors = (column(base, name) for name in ("x", "simulation", "standard_error"))
+    at, largest = abs(x).argmin(), values.argmax()
+    out = {"ensemble.realizations": count, "response.centre_over_largest": float(values[at] / values[largest])}
+    if math.isfinite(errors[at]) and at != largest:
+        share = out["response.centre_over_largest"]
+        out["response.centre_over_largest.standard_error"] = float(
+            math.hypot(errors[at], share * errors[largest]) / values[largest])
+    return out
 
 
 def inside(points, values):
@@ -162,11 +274,54 @@ def inside(points, values):
 
 
 def inside_of(fields):
-    """How the constants and the fabric of a heap change from the surface inwards."""
+    """How the constants and the fabric of a heap change from the surface inwards, and with one another."""
     constants, fabric = fields["elastic_constants"], fields["fabric"]
+    trace = fabric["value/fabric_trace"][:]
     out = {f"inside.{name}": inside(constants["points"][:], constants["value"][name][:])
            for name in ("bulk", "shear", "young", "poisson")}
-    return out | {"inside.fabric_trace": inside(fabric["points"][:], fabric["value/fabric_trace"][:])}
+    cambou = fields["strain_cambou"]
+    out |= {f"signed.{name}": along_base(cambou["points"][:], fields[f"strain_{name}/value/strain_yy"][:],
+                                         cambou["value/strain_yy"][:]) for name in ("cundall", "liao", "derivative")}
+    return out | {"inside.fabric_trace": inside(fabric["points"][:], trace)}
+
+
+def curvature(places, values):
+    """The quadratic over the linear term of values against places, by least squares, at one standard deviation."""
+    known = numpy.isfinite(places) & numpy.isfinite(values)
+    at = (places[known] - places[known].mean()) / places[known].std()
+    quadratic, linear, _ = numpy.polyfit(at, values[known], 2)
+    return float(quadratic / linear)
+
+
+def curvatures(maps):
+    """The curvatures of the constants against tr F, the first of the maps, over the points that all heaps have."""
+    def of(some):
+        mean = some.mean(axis=0)
+        return numpy.array([curvature(mean[0], one) for one in mean[1:]])
+
+    heaps = len(maps)
+    left = numpy.array([of(numpy.delete(maps, one, axis=0)) for one in range(heaps)])
+    errors = numpy.sqrt((heaps - 1) * ((left - left.mean(axis=0)) ** 2).mean(axis=0))
+    out = {}
+    for name, value, error in zip(CONSTANTS, of(maps), errors):
+        out[f"curvature.{name}"], out[f"curvature.{name}.standard_error"] = float(value), float(error)
+    return out
+
+
+def sizes_of(every, *without_one):
+    """The sizes that an RVE needs by all heaps, and by all but one."""
+    out = {"ensemble.realizations": every["ensemble.realizations"]}
+    for key in (f"rve_size.{name}_grains" for name in ("stress", "strain", "fabric")):
+        found = [summary[key] if summary[key] is not None else math.inf for summary in without_one]
+        out |= {key: every[key], f"{key}.least": min(found), f"{key}.most": max(found)}
+    return out
+
+
+def along_base(points, values, others):
+    """The sum of the values of the lowest row of points over that of the others, where both are known."""
+    known = numpy.isfinite(values) & numpy.isfinite(others)
+    low = known & (points[:, 1] == points[known, 1].min())
+    return float(values[low].sum() / others[low].sum())
 
 
 def summarized(found):
@@ -193,8 +348,24 @@ def poured(low, high):
 
 
 def of_summary(summary, beginnings):
-    """The keys of a summary that begin with one of these, and the number of realizations."""
-    return {key: value for key, value in summary.items() if key.startswith((*beginnings, "ensemble.realizations"))}
+    """The keys of a summary, or of a record of runs/next.py, that begin with one of these, and the number of
+    realizations."""
+    summary = summary.get("summary", summary)
+    out = {key: value for key, value in summary.items() if key.startswith((*beginnings, "ensemble.realizations"))}
+    return out | one_peak_to(summary) if "response." in beginnings else out
+
+
+def one_peak_to(summary):
+    """The share of the depth down to which the profiles have one peak; 0 where the first one has more."""
+    found = {float(key.split("depth_")[1].removesuffix(".peaks")): value for key, value in summary.items()
+             if key.startswith("response.depth_") and key.endswith(".peaks")}
+    found[1.0] = summary["response.peaks"]
+    reached = 0.0
+    for depth in sorted(found):
+        if found[depth] != 1:
+            break
+        reached = depth
+    return {"response.one_peak_to": reached}
 
 
 def with_keys(text, added):
@@ -212,13 +383,20 @@ def figures(kind, files, keys):
     if kind == "summary":
         return of_summary(json.loads(files[0].read_text()), keys)
     if kind == "fields":
-        with h5py.File(files[0]) as fields:
-            return inside_of(fields) | of_summary(json.loads(files[0].with_name("summary.json").read_text()), ())
-    if kind == "strain":
-        return summarized([strain_of(files[0])])
+        found, maps = [], []
+        for file in files:
+            with h5py.File(file) as fields:
+                found.append(inside_of(fields))
+                maps.append([fields["fabric/value/fabric_trace"][:],
+                             *(fields["elastic_constants/value"][name][:] for name in CONSTANTS)])
+        return summarized(found) | curvatures(numpy.array(maps))
+    if kind == "rve":
+        return sizes_of(*(json.loads(file.read_text()) for file in files))
+    if kind in ("strain", "pieces", "centre"):
+        return {"strain": strain_of, "pieces": pieces_of, "centre": lambda found: centre_of(found[0])}[kind](files)
     found = []
     for file in files:
-        of = {"angles": angles_of, "gravity": gravity_of, "forces": forces_of,
+        of = {"angles": angles_of, "gravity": gravity_of, "forces": forces_of, "network": network_of,
               "poured": lambda run: stress_sums(run["pile"])}[kind]
         with h5py.File(file) as states:
             found.append([of(states[name]) for name in sorted(states)])
@@ -227,7 +405,8 @@ def figures(kind, files, keys):
 
 def main():
     options = argparse.ArgumentParser(description="Measures on states what no summary has.")
-    options.add_argument("kind", choices=("angles", "gravity", "forces", "poured", "fields", "strain", "summary"))
+    options.add_argument("kind", choices=("angles", "gravity", "forces", "network", "poured", "fields", "strain",
+                                          "pieces", "centre", "rve", "summary"))
     options.add_argument("study", help="results/STUDY.json takes the keys")
     options.add_argument("file", type=pathlib.Path, nargs="+")
     options.add_argument("--member", required=True, help="ends the keys")

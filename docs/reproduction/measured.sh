@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # measured.sh PROGRAM FOLDER: makes the runs in FOLDER and measures again what measure.py has added to results/.
-# Half an hour of processor time. The stored values are of grainfield 0.9.0 (4f4be8ee).
+# Half an hour of processor time. The stored values are of grainfield 0.9.0 (4f4be8ee; of layers and of single piles of
+# 2,000 grains 915d9e90).
 set -euo pipefail
 program=$(realpath "$1")
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -29,8 +30,34 @@ for g in 5 20; do
 done
 measure poured pile-point-source poured-{5,20}/sleeping/snapshots.h5 --member grains_100
 
-run inside pile-fields --set "$(set_files pile-point-source-2000)" --set $four --set 'change.gravity=[8.829]'
-measure fields pile-fields inside/fields.h5 --member fields_2000
+measure network pile-fields pile-point-source-2000.h5 --member grains_2000
+/usr/bin/python3 - <<'END'
+import h5py
+with h5py.File("pile-point-source-2000.h5") as states:
+    for name in states:
+        with h5py.File(f"pile-{int(name[-3:])}.h5", "w") as one:
+            states.copy(name, one, name="realization_000")
+END
+for k in {0..7}; do
+  run inside-$k pile-fields --set "$(set_files pile-$k)" --set ensemble.realizations=1 --set 'change.gravity=[8.829]'
+done
+measure fields pile-fields inside-{0..7}/fields.h5 --member fields_2000
+for k in {0..7}; do
+  run narrow-$k pile-fields --set "grains.files=[\"inside-$k/snapshots.h5\"]" --set ensemble.realizations=1 \
+    --set 'change.gravity=[8.829]' --set fields.rve_diameters=3
+done
+measure fields pile-fields narrow-{0..7}/fields.h5 --member narrow_2000
+topic() { # TOPIC NAME PILE ...: one topic by these piles
+  local files
+  files=$(printf '"inside-%s/snapshots.h5",' "${@:3}")
+  run "$2" pile-fields --set "grains.files=[${files%,}]" --set ensemble.realizations=$(($# - 2)) \
+    --set 'change.gravity=[8.829]' --set "fields.topics=[\"$1\"]"
+}
+topic forces tail {0..7}
+measure summary pile-fields tail/summary.json --member fields_2000 --keys forces.tail
+topic rve_size rve-all {0..7}
+for k in {0..7}; do topic rve_size rve-$k $(seq 0 7 | grep -v $k); done
+measure rve pile-fields rve-{all,0,1,2,3,4,5,6,7}/summary.json --member fields_2000
 run equal pile-fields --quick --set shape.polydispersity=0 --set source.grains=150 --set source.height=0.15 \
   --set ensemble.realizations=3 --set 'change.gravity=[8.829]'
 measure summary pile-fields equal/summary.json --member equal_150 --keys fabric.g2
@@ -43,19 +70,49 @@ run fit fit-asymmetric --set "$(set_files pile-asymmetric-line)" --set ensemble.
 measure summary fit-asymmetric fit/summary.json --member line \
   --keys fit.cantelaube_asymmetric_zero.rel_l2 fit.cantelaube_asymmetric_zero.chi2
 
+# The layers of runs/roul-layers.txt, by their states or tables, of the runs that are there.
+layers=$here/states/roul-layers
+unpack() { [ -e "$1.h5" ] || { xz -dkc "$layers/$1.h5.xz" > "$1.h5.part" && mv "$1.h5.part" "$1.h5"; }; }
+layer() { # STUDY NAME MEMBER
+  [ -e "$layers/$2.json" ] || return 0
+  measure summary "$1" "$layers/$2.json" --member "$3" --keys response. load.
+  [ ! -e "$layers/$2.profiles.csv" ] || measure centre "$1" "$layers/$2.profiles.csv" --member "$3"
+}
+strain() { # NAME MEMBER REALIZATION ...
+  [ -e "$layers/$1.json" ] || return 0
+  unpack "$1"
+  local tables=()
+  for k in "${@:3}"; do
+    "$program" strain "$1.h5:realization_00$k"/{unloaded,loaded} --measure derivative --frame layer --grid 161x33 \
+      -o "$1-$k.csv"
+    tables+=("$1-$k.csv")
+  done
+  measure strain point-load-mono "${tables[@]}" --member "$2"
+}
+layer point-load-mono mono_0.3 force_0.3
+layer point-load-mono mono_300 force_300
+for force in 3 300; do layer point-load-mono mono_$force-varied varied_$force; done
+for mu in 0.3 0.6 0.9; do
+  layer point-load-friction friction_$mu friction_$mu
+  layer point-load-friction friction_$mu-varied varied_$mu
+done
+for one in 0{3,8}_{3,30,100,300}; do layer point-load-load load_$one-varied varied_$one; done
+layer point-load-pentagons pentagons layers_24
+layer point-load-bidisperse bidisperse_100 force_100
+for floor in smooth rough; do
+  [ ! -e "$layers/$floor-1.json" ] ||
+    measure pieces point-load-polydisperse "$layers/$floor"-*.profiles.csv --member pieces_$floor
+done
+unpack mono_300 && measure angles point-load-mono mono_300.h5 --member packing
+unpack friction_0.3 && measure angles point-load-friction friction_0.3.h5 --member packing
+strain mono_rough_3 rough_3 0
+strain mono_rough_300 rough_300 0
+strain mono_rough_3-varied rough_3_varied {0..7}
+
 flamant='compare.models=["flamant"]'
-run mono point-load-mono --set "$flamant" --set 'sweep.values=[3]'
-measure angles point-load-mono mono/force_3/snapshots.h5 --member packing
-run friction point-load-friction --set "$flamant" --set 'sweep.values=[0.3]'
-measure angles point-load-friction friction/friction_0.3/snapshots.h5 --member packing
 run pentagons point-load-pentagons --set "$flamant" --set $four
 measure angles point-load-pentagons pentagons/snapshots.h5 --member packing
 run polydisperse point-load-polydisperse --set "$flamant" --set $four --set 'sweep.values=["smooth"]'
 measure angles point-load-polydisperse polydisperse/floor_smooth/snapshots.h5 --member packing
 run bidisperse point-load-bidisperse --set "$flamant" --set ensemble.realizations=2
 measure angles point-load-bidisperse bidisperse/snapshots.h5 --member packing
-
-run rough point-load-mono --set packing.floor=rough --set "$flamant" --set 'sweep.values=[3,300]'
-layer=rough/force_3/snapshots.h5:realization_000
-"$program" strain $layer/unloaded $layer/loaded --measure derivative --frame layer --grid 161x33 -o strain.csv
-measure strain point-load-mono strain.csv --member rough_3

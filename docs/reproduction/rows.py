@@ -282,6 +282,26 @@ def _spread(row: Row, results: Results) -> str | None:
     return f"{'large' if share > 1 else 'small'}: a single one scatters by {share:.1f} of the mean"
 
 
+def _deeper(row: Row, results: Results) -> str | None:
+    """Whether the second of a pair of shares of the depth is larger than the first."""
+    pair = _pair(row, results)
+    if pair is None:
+        return None
+    first, second = (one.value for one in pair)
+    return f"{'deeper' if second > first else 'not deeper'}: to {first:g} and to {second:g} of the depth"
+
+
+def _grains_needed(row: Row, results: Results) -> str | None:
+    """The size that an RVE needs by all heaps, and how far it moves without one of them."""
+    low, high = row["sizes"]
+    found = [results.plain(row["study"], f"{row['key']}{part}.{row['member']}") for part in ("", ".least", ".most")]
+    if None in found:
+        return None
+    places = {"fewer" if one < low else "more" if one > high else "within" for one in found}
+    return (f"{places.pop() if len(places) == 1 else 'between'}: {found[0]:.0f} grains, "
+            f"{found[1]:.0f} to {found[2]:.0f} without one heap")
+
+
 def _growth(row: Row, results: Results) -> str | None:
     """Power of the depth with which the width grows, as load over largest response, between two depths."""
     dot = f".{row['member']}" if "member" in row else ""
@@ -319,6 +339,8 @@ RULES: dict[str, Rule] = {
     "turning soft": _turning_soft,
     "static friction": _static_friction,
     "spread": _spread,
+    "deeper": _deeper,
+    "grains needed": _grains_needed,
     "growth": _growth,
     "nearer": _nearer,
 }
@@ -348,6 +370,7 @@ RULE_BANDS = {
     "turning soft": "all at rest, 90 % of them soft",
     "static friction": "no rest without it",
     "spread": "above the mean",
+    "deeper": "at one of the depths of 0.1 to 0.9 more",
     "growth": "power of 0.75 to 1.25",
     "nearer": "by the largest difference",
 }
@@ -404,7 +427,7 @@ def agreement(found: Measured, row: Row) -> str:
 
     It says nothing with one realization, between the two, where the miss is within `resolution` (half
     the distance of the recorded states), or where the interval ends outside the range and half of it
-    exceeds TOO_WIDE of the source's value (of the effect that a ratio reports).
+    exceeds TOO_WIDE of the source's value (of the effect that a ratio reports; where the range has no end, always).
     """
     if math.isnan(found.error):
         return "no error, no statement"
@@ -414,7 +437,7 @@ def agreement(found: Measured, row: Row) -> str:
         return COARSE
     if miss > found.half:
         return f"differs by {with_unit(f'{miss:.2g}', row)} ({miss / found.error:.1f} standard errors)"
-    stake = row.get("effect", abs((low + high) / 2))
+    stake = row.get("effect", 0 if math.isinf(high) else abs((low + high) / 2))
     inside = "effect" not in row and low <= found.value - found.half and found.value + found.half <= high
     return "agrees" if inside or miss == 0 and found.half <= TOO_WIDE * stake else WIDE
 

@@ -121,7 +121,7 @@ class Results:
         value = self.plain(study, key + dot)
         if value is None or math.isnan(value):
             return None
-        count = self.realizations(study, member)
+        count = self.plain(study, f"ensemble.pieces{dot}") or self.realizations(study, member)
         freedom = count - 1 if count is not None and count > 1 else math.inf
         if key.startswith("fit."):
             kinds = [self.plain(study, f"{key}.{kind}") for kind in ("error", "bootstrap_error")]

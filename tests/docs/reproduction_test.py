@@ -1,6 +1,7 @@
 """docs/reproduction.md is what its script makes, and the script judges by the rules that the page states."""
 import base64
 import json
+import math
 import re
 import sys
 from pathlib import Path
@@ -176,6 +177,9 @@ def test_agreement_by_its_rule():
     # A ratio that cannot tell 1.09 from 1 says nothing, although its range holds 1.09.
     ratio = {"range": [1.08, 1.10]}
     assert agreement(Measured(1.09, 0.05), ratio) == "agrees"
+    # A range without an end has no middle: the whole interval lies in it, or nothing is said.
+    assert agreement(Measured(1.2, 0.05), {"range": [1, float("inf")]}) == "agrees"
+    assert agreement(Measured(1.2, 0.2), {"range": [1, float("inf")]}) == "spread too wide to tell"
     assert agreement(Measured(1.09, 0.05), ratio | {"effect": 0.09}) == "spread too wide to tell"
     assert agreement(Measured(1.085, 0.02), ratio | {"effect": 0.09}) == "agrees"
 
@@ -416,6 +420,9 @@ def test_directions_of_forces_by_hand():
     contacts = [(0, 1 if k < 5 else -1, one, (0, 0, 0)) for k, one in enumerate(force)]
     found = measure.angles_of({"unloaded": heap([(0, 0, 0), (1, 0, 0)], contacts)})
     assert found["angles.near_60"] == 0.75 and found["angles.near_30"] == 0.25
+    strong = contacts[:4] + [(0, 1, (2, 0, 0), (0, 0, 0))]  # the mean is 1.2
+    found = measure.angles_of({"unloaded": heap([(0, 0, 0), (1, 0, 0)], strong)})
+    assert found["angles.strong_near_60"] == 1 and found["angles.near_60"] == 0.8
     assert measure.order(measure.numpy.full(40, 12.0)) == 1
     even = measure.numpy.random.default_rng(1).uniform(0, 360, (40, 500))
     assert abs(measure.numpy.mean([measure.order(one) for one in even])) < 1e-3  # 0.010 without Miller's term
@@ -449,6 +456,76 @@ def test_forces_inside_a_heap_by_hand():
     assert 2 < found["forces.middle_over_surface"] < 3
 
 
+def test_forces_that_hold_a_heap_by_hand():
+    """Three grains on a floor, 1 on both others; 3 hangs on 0 alone, and without it 4 has one contact."""
+    state = heap([(0, 0, 0), (2, 0, 0), (1, 2, 0), (-2, 0, 0), (-4, 0, 0)],
+                 [(0, -1, (0, 1, 0), (0, -1, 0)), (1, -1, (0, 1, 0), (2, -1, 0)), (2, 0, (0, 1, 0), (0, 0, 0)),
+                  (2, 1, (0, 1, 0), (0, 0, 0)), (0, 1, (1, 0, 0), (1, 0, 0)), (3, 4, (1, 0, 0), (0, 0, 0)),
+                  (4, 3, (0, 0, 0), (0, 0, 0)), (3, 0, (1, 0, 0), (0, 0, 0))])
+    state["contacts"]["sliding"] = measure.numpy.array([0, 1, 0, 0, 0, 1, 1, 0])
+    state["contacts"]["normal_force"] = measure.numpy.array([1, 1, 1, 1, 1, 1, 0, 1.0])
+    state["grains/volume"] = measure.numpy.full(5, 3.0)
+    assert measure.network_of({"pile": state})["network.components_over_equations"] == 9 / 9
+
+
+def test_contacts_that_grow_as_the_theory_says_have_its_g2():
+    """Equal grains have 1; in rows deep enough the theory's own numbers of contacts give its g2."""
+    places = [(x, y, 0) for y in range(20) for x in range(8)]
+    state = heap(places, [(k, (k + 1) % 160, (0, 1, 0), (0, 0, 0)) for k in range(160)])
+    state["contacts"] |= {"sliding": measure.numpy.zeros(160), "normal_force": measure.numpy.ones(160)}
+    state["grains/volume"] = measure.numpy.full(160, math.pi / 4)
+    found = measure.network_of({"pile": state})
+    assert found["network.g2"] == pytest.approx(1) and found["network.g2_over_theory"] == pytest.approx(1)
+    # Two sizes and as many contacts of each: (mean area)/(mean area) is 1, the theory's is above.
+    state["grains/volume"] = measure.numpy.where(measure.numpy.arange(160) % 2, 1.0, 0.5) * math.pi / 4
+    found = measure.network_of({"pile": state})
+    assert found["network.g2"] == pytest.approx(1) and found["network.g2_over_theory"] < 0.99
+
+
+def test_a_bent_relation_of_maps_by_hand():
+    places = measure.numpy.array([-1.0, 0, 1, NAN])
+    bent = [1 + 2 * places + 0.5 * places**2, 3 - places, places + 0.2 * places**2]
+    bend = 0.5 / 2 * measure.numpy.std([-1, 0, 1])
+    found = measure.curvatures(measure.numpy.array([[places, *bent]] * 3))
+    assert found["curvature.bulk"] == pytest.approx(bend) and found["curvature.bulk.standard_error"] < 1e-12
+    assert found["curvature.shear"] == pytest.approx(0, abs=1e-12)
+    # Three heaps whose bends are b, 3 b and 5 b: the jackknife of a mean is its standard error.
+    others = [[places, 1 + 2 * places + times * 0.5 * places**2, *bent[1:]] for times in (3, 5)]
+    found = measure.curvatures(measure.numpy.array([[places, *bent], *others]))
+    assert found["curvature.bulk"] == pytest.approx(3 * bend)
+    assert found["curvature.bulk.standard_error"] == pytest.approx(2 * bend / 3**0.5)
+
+
+def test_strains_along_the_base_keep_their_signs():
+    points = measure.numpy.array([(0, -1), (1, -1), (2, -1), (0, 0)], dtype=float)
+    values, others = measure.numpy.array([-1.0, -2, NAN, 9]), measure.numpy.array([-2.0, -2, -5, 1])
+    assert measure.along_base(points, values, others) == 0.75
+
+
+def test_sizes_of_rves_without_one_heap(tmp_path):
+    def run(stress, strain):
+        return {"ensemble.realizations": 3, "rve_size.stress_grains": stress, "rve_size.strain_grains": strain,
+                "rve_size.fabric_grains": 20}
+
+    found = measure.sizes_of(run(150, 150), run(110, 60), run(190, None))
+    assert found["rve_size.stress_grains.least"] == 110 and found["rve_size.strain_grains.most"] == math.inf
+    (tmp_path / "s.json").write_text(json.dumps({f"{key}.m": value for key, value in found.items()
+                                                 if value != math.inf} | {"rve_size.strain_grains.most.m": "inf"}))
+    row = {"study": "s", "member": "m", "rule": "grains needed", "sizes": [100, 200], "agrees": ["within"]}
+    said = {name: judged(row | {"key": f"rve_size.{name}_grains"}, Results(tmp_path)) for name in ("stress", "strain",
+                                                                                                   "fabric")}
+    assert said["stress"] == ("within: 150 grains, 110 to 190 without one heap", "agrees")
+    assert said["strain"] == ("between: 150 grains, 60 to inf without one heap", "spread too wide to tell")
+    assert said["fabric"] == ("fewer: 20 grains, 20 to 20 without one heap", "differs")
+
+
+def test_one_peak_reaches_deeper_by_hand(tmp_path):
+    (tmp_path / "s.json").write_text('{"k.a": 0.2, "k.b": 0.4}')
+    row = {"study": "s", "rule": "deeper", "key": "k", "from": "a", "to": "b", "agrees": ["deeper"]}
+    assert judged(row, Results(tmp_path)) == ("deeper: to 0.2 and to 0.4 of the depth", "agrees")
+    assert judged(row | {"from": "b"}, Results(tmp_path)) == ("not deeper: to 0.4 and to 0.4 of the depth", "differs")
+
+
 def test_growth_inwards_by_hand():
     """Columns of four and of three points, and one whose value is missing; a middle counts as the upper half."""
     points = measure.numpy.array([(0, 0), (0, -1), (0, -2), (0, -3), (1, -2), (1, -3), (1, -4), (2, -3), (0, -4)],
@@ -459,11 +536,70 @@ def test_growth_inwards_by_hand():
 
 def test_peaks_and_widths_of_strains_by_hand(tmp_path):
     table = tmp_path / "field.csv"
-    lines = {-1: [0, 0, 4, 0, 0], -2: [0, 3, 2, 2.9, 0], -3: [2, 2, 2.1, 2, 2], -4: [0, 0, 0, 0, 0]}
-    table.write_text("# a field\nx,y,strain_yy\n" + "".join(
-        f"{x},{y},{-value}\n" for y, values in lines.items() for x, value in zip(range(-2, 3), values)))
-    assert measure.strain_of(table) == {"strain.peaks": 2, "strain.width_ratio": 4}
+
+    def write(file, lines):
+        file.write_text("# a field\nx,y,strain_yy\n" + "".join(
+            f"{x},{y},{-value}\n" for y, values in lines.items() for x, value in zip(range(-2, 3), values)))
+
+    write(table, {-1: [0, 0, 4, 0, 0], -2: [0, 3, 2, 2.9, 0], -3: [2, 2, 2.1, 2, 2], -4: [0, 0, 0, 0, 0]})
+    assert measure.strain_of([table]) == {"ensemble.realizations": 1, "strain.peaks": 2, "strain.width_ratio": 4}
+    # The dent of one layer is a hump of the other.
+    write(other := tmp_path / "other.csv", {-1: [0, 0, 4, 0, 0], -2: [0, 3, 6, 3, 0], -3: [2, 2, 2.1, 2, 2],
+                                            -4: [0, 0, 0, 0, 0]})
+    assert measure.strain_of([table, other])["strain.peaks"] == 1
+    write(other, {-1: [0, 0, 4, 0, 0], -2: [0, 3, 6, 3, 0]})
+    with pytest.raises(ValueError, match="unlike grids"):
+        measure.strain_of([table, other])
     assert measure.width(measure.numpy.arange(5.0), measure.numpy.array([0, 3, 2, 3, 0.0])) == pytest.approx(3)
+
+
+def layer_piece(folder, name, realizations, base):
+    """A piece of an ensemble: x, pressure, error and the half plane's on a base 4 m deep; depths do not count."""
+    (folder / f"{name}.json").write_text(json.dumps({"summary": {"ensemble.realizations": realizations}}))
+    file = folder / f"{name}.profiles.csv"
+    file.write_text("# layers\nprofile,depth_m,x_m,simulation_N/m,standard_error_N/m,flamant_N/m\n"
+                    "depth_0.5,2,0,99,9,99\n" + "".join(
+                        f"base,4,{x},{value},{error},{model}\n" for x, value, error, model in base))
+    return file
+
+
+def test_an_ensemble_in_pieces_by_hand(tmp_path):
+    one = layer_piece(tmp_path, "one", 3, [(-2, 1, 0, 1), (-1, 2, 0, 2), (0, 4, 0, 3), (1, 3, 0, 2), (2, 0, 0, 0)])
+    two = layer_piece(tmp_path, "two", 3, [(-2, 1, 0, 1), (-1, 4, 0, 2), (0, 2, 0, 3), (1, 6, 0, 2), (2, 0, 0, 0)])
+    found = measure.pieces_of([one, two])
+    assert found == pytest.approx({
+        "ensemble.realizations": 6, "ensemble.pieces": 2, "response.near_axis": 3.5, "response.largest": 4.5,
+        "response.near_axis.standard_error": 0.5, "response.largest.standard_error": 1.5,
+        "response.flamant_rel_l2": (7.25 / 39.25) ** 0.5})  # of 1, 3, 3, 4.5, 0 from 1, 2, 3, 2, 0
+    with pytest.raises(ValueError, match="unlike size"):
+        measure.pieces_of([one, layer_piece(tmp_path, "three", 4, [(0, 1, 0, 1)])])
+
+
+def test_pieces_not_layers_give_the_freedom_of_an_error(tmp_path):
+    (tmp_path / "s.json").write_text(json.dumps({
+        "k.a": 1, "k.standard_error.a": 0.1, "ensemble.realizations.a": 24, "ensemble.pieces.a": 2}))
+    results = Results(tmp_path)
+    assert results.number("s", "k", "a").freedom == 1 and results.realizations("s", "a") == 24
+
+
+def test_the_response_below_the_load_by_hand(tmp_path):
+    file = layer_piece(tmp_path, "dip", 8, [(-1, 4, 0.3, 1), (0, 2, 0.2, 1), (1, 3.9, 0.3, 1)])
+    assert measure.centre_of(file) == pytest.approx({
+        "ensemble.realizations": 8, "response.centre_over_largest": 0.5,
+        "response.centre_over_largest.standard_error": (0.2**2 + (0.5 * 0.3) ** 2) ** 0.5 / 4})
+    top = layer_piece(tmp_path, "peak", 8, [(-1, 1, 0.3, 1), (0, 2, 0.2, 1), (1, 1, 0.3, 1)])
+    assert measure.centre_of(top)["response.centre_over_largest"] == 1
+
+
+def test_down_to_which_depth_there_is_one_peak():
+    peaks = {"response.depth_0.25.peaks": 1, "response.depth_0.5.peaks": 1, "response.depth_0.75.peaks": 3}
+    assert measure.one_peak_to(peaks | {"response.peaks": 1}) == {"response.one_peak_to": 0.5}
+    assert measure.one_peak_to(peaks | {"response.peaks": 1, "response.depth_0.25.peaks": 2}) == {
+        "response.one_peak_to": 0}
+    assert measure.one_peak_to({"response.depth_0.5.peaks": 1, "response.peaks": 1}) == {"response.one_peak_to": 1}
+    record = {"summary": {"response.peaks": 2, "response.depth_0.5.peaks": 1, "ensemble.realizations": 8, "load.x": 3}}
+    assert measure.of_summary(record, ["response."]) == {
+        "response.peaks": 2, "response.depth_0.5.peaks": 1, "ensemble.realizations": 8, "response.one_peak_to": 0.5}
 
 
 def test_measured_keys_replace_their_older_ones():

@@ -16,8 +16,9 @@ next call goes on to the same bits. Several calls at once take different runs. A
 two files in docs/reproduction/states/LIST/, which are committed: NAME.h5.xz, its states compacted
 (states/compact.py), and NAME.json with seed, commit, settings, processor time, the SHA-256 of the
 states and the figures of summary.json. A run with output.snapshots=false leaves its tables instead of
-states, NAME.TABLE.csv. A run whose NAME.json is there is not missing. With --pack a run that has not
-ended leaves NAME.unfinished.tar.xz there, committed: another machine goes on from it. A run whose grains.files name
+states, NAME.TABLE.csv: those beside states.csv (of a sample) or profiles.csv. A run whose NAME.json is
+there is not missing. With --pack a run that has not ended leaves NAME.unfinished.tar.xz there,
+committed: another machine goes on from it. A run whose grains.files name
 docs/reproduction/states/LIST/NAME.h5 waits until that run's states are there, and unpacks them.
 
 Ends with 0 when a run has ended or has come further, 1 when none is missing, 2 when it cannot start or a
@@ -205,8 +206,10 @@ def keep(run, tag, commit, folder, states):
     name, seed, case, settings = run
     without_states = "output.snapshots=false" in settings
     compact = folder / "compact.h5"
-    wanted = "states.csv" if without_states else "snapshots.h5"
-    found = sorted((folder / "results").rglob(wanted))
+    for wanted in ("states.csv", "profiles.csv") if without_states else ("snapshots.h5",):
+        found = sorted((folder / "results").rglob(wanted))
+        if found:
+            break
     if len(found) != 1:  # a sweep leaves one in the folder of each value
         fail(f"{name}: found {len(found)} files {wanted}; allowed: one, of one value of a sweep")
     states.mkdir(parents=True, exist_ok=True)
