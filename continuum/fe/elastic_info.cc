@@ -19,7 +19,18 @@ std::vector<Parameter> common_parameters() {
           number("E", "Pa", "Young's modulus (N/m in 2D); the stress does not depend on it",
                  "elasticity", 1e7, kAboveZero, kUnbounded),
           // Beyond this displacement elements lock and the iterations grow.
-          number("nu", "-", "Poisson's ratio", "elasticity", 0.3, 0, 0.49)};
+          number("nu", "-", "Poisson's ratio", "elasticity", 0.3, 0, 0.49),
+          text("moduli",
+               "instead of E and nu: CSV file of constants by depth, columns depth,E,nu or "
+               "depth,E_v,E_h,nu_h,nu_v,G_v, linear between the rows, constant below the last; the "
+               "first depth is 0",
+               "Holl 1940")};
+}
+
+// Why E or nu has no effect beside a table.
+std::string moduli_replace(const std::string& parameter, const Settings& s) {
+  const bool constant = parameter == "E" || parameter == "nu";
+  return constant && !s.at("moduli").empty() ? replaced_by("moduli", s) : std::string();
 }
 
 std::vector<Parameter> numerical_parameters(const std::string& tolerances, int refinements) {
@@ -122,7 +133,7 @@ ModelInfo elastic_layer() {
                   numerical_parameters("over F/h (3D: F/h2); 0: 2e-4 in 2D, 5e-3 in 3D", 6)}),
           in_fe_library("fe_elastic_layer"),
           solver_figures({}),
-          {},
+          moduli_replace,
           [](const Settings& s) { return layer_mesh(s, in_space(s)); }};
 }
 
@@ -183,7 +194,7 @@ ModelInfo elastic_half_space() {
                "over F/r (3D: F/r2), r the distance from the load; 0: 2e-3 in 2D, 1e-2 in 3D", 4)}),
       in_fe_library("fe_elastic_half_space"),
       half_space_figures(),
-      {},
+      moduli_replace,
       [](const Settings& s) { return half_space_mesh(s, in_space(s)); }};
 }
 

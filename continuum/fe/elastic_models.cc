@@ -9,10 +9,14 @@
 // whose cells grow with their distance from the load, reaches so far (each doubling of the radius
 // costs the same number of cells) that holding its end fixed is not felt at the depth of interest.
 //
-// The material is isotropic, or in space has a vertical axis of symmetry.
+// The material is isotropic, or in space has a vertical axis of symmetry. Its constants may change
+// with the depth. The closed form of the layer is then that of the constants C_0 at the surface,
+// and the elements solve for the rest with the initial stress (C - C_0) eps_0, as
+// orthotropic_layer.cc does.
 #include <deal.II/grid/grid_generator.h>
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <functional>
 
@@ -20,6 +24,7 @@
 #include "continuum/closed/transverse.h"
 #include "continuum/fe/box_model.h"
 #include "continuum/fe/plugin.h"
+#include "continuum/moduli_by_depth.h"
 #include "continuum/settings.h"
 
 namespace grainfield::continuum {
@@ -59,13 +64,35 @@ Vector<dim> point_load_displacement(double F, double E, double nu, const Point<d
   return u;
 }
 
-/// A material, and its half space under the load.
+/// A material, and the half space of its constants at the surface under the load.
 template <int dim>
 struct Medium {
   fe::Stiffness<dim> stiffness;
   std::function<Stress<dim>(const Point<dim>&)> stress = {};
   std::function<Vector<dim>(const Point<dim>&)> displacement = {};
+  /// Of a table, with the inverse of its stiffness at the surface.
+  std::function<fe::Stiffness<dim>(const Point<dim>&)> stiffness_at = {};
+  fe::Stiffness<dim> compliance = {};
+
+  void put_stiffness(ElasticProblem<dim>& equations) const {
+    if (stiffness_at)
+      equations.stiffness_at = stiffness_at;
+    else
+      equations.stiffness = stiffness;
+  }
 };
+
+/// C eps_0 of the half space's strain eps_0, C that of a place.
+template <int dim>
+Stress<dim> stress_of(const fe::Stiffness<dim>& C, const Medium<dim>& medium,
+                      const Stress<dim>& at_surface) {
+  Eigen::Matrix<double, fe::kStresses<dim>, 1> s;
+  for (unsigned int c = 0; c < fe::kStresses<dim>; ++c) s[c] = at_surface[c];
+  s = C * (medium.compliance * s);
+  Stress<dim> out;
+  for (unsigned int c = 0; c < fe::kStresses<dim>; ++c) out[c] = s[c];
+  return out;
+}
 
 template <int dim>
 Medium<dim> isotropic(const Settings& s) {
@@ -75,9 +102,27 @@ Medium<dim> isotropic(const Settings& s) {
           [=](const Point<dim>& p) { return point_load_displacement<dim>(F, E, nu, p); }};
 }
 
-Medium<3> transverse(const std::string& model, const Settings& s) {
-  const TransverseModuli moduli = transverse_moduli(model, s);
-  const TransverseHalfSpace half_space(number_of(s, "F"), moduli);
+/// Stress and displacement of the half plane of a vertical section.
+Medium<2> plane_of(double F, const TransverseModuli& moduli) {
+  const PlaneModuli plane = moduli.plane_strain();
+  Medium<2> out{stiffness(plane)};
+  out.stress = [F, ratios = orthotropy(plane)](const Point<2>& p) {
+    const auto found = orthotropic_stress(F, ratios, p[0], p[1]);
+    Stress<2> stress;
+    for (unsigned int c = 0; c < 3; ++c) stress[c] = found[c];
+    return stress;
+  };
+  out.displacement = [F, plane](const Point<2>& p) {
+    const auto found = orthotropic_displacement(F, plane, p[0], p[1]);
+    Vector<2> u;
+    for (unsigned int d = 0; d < 2; ++d) u[d] = found[d];
+    return u;
+  };
+  return out;
+}
+
+Medium<3> space_of(double F, const TransverseModuli& moduli) {
+  const TransverseHalfSpace half_space(F, moduli);
   Medium<3> out{moduli.stiffness()};
   out.stress = [half_space](const Point<3>& p) {
     const auto found = half_space.stress(p[0], p[1], p[2]);
@@ -91,6 +136,26 @@ Medium<3> transverse(const std::string& model, const Settings& s) {
     for (unsigned int d = 0; d < 3; ++d) u[d] = found[d];
     return u;
   };
+  return out;
+}
+
+/// Constants by depth, from a table that reaches as deep as the model.
+template <int dim>
+Medium<dim> graded(const Settings& s, double depth) {
+  const ModuliByDepth table = read_moduli_by_depth(s.at("moduli"));
+  table.require_cover(depth);
+  const double F = number_of(s, "F");
+  Medium<dim> out;
+  if constexpr (dim == 2) {
+    out = plane_of(F, table.at(0));
+    out.stiffness_at = [table](const Point<2>& p) {
+      return stiffness(table.at(-p[1]).plane_strain());
+    };
+  } else {
+    out = space_of(F, table.at(0));
+    out.stiffness_at = [table](const Point<3>& p) { return table.at(-p[2]).stiffness(); };
+  }
+  out.compliance = out.stiffness.inverse();
   return out;
 }
 
@@ -124,7 +189,13 @@ class ElasticLayer : public BoxModel<dim> {
       return -fe::traction<dim>(medium_.stress(p), normal);
     };
     ElasticProblem<dim> equations;
-    equations.stiffness = medium_.stiffness;
+    medium_.put_stiffness(equations);
+    if (medium_.stiffness_at) {
+      equations.initial_stress = [this](const Point<dim>& p) {
+        return stress_of<dim>(medium_.stiffness_at(p) - medium_.stiffness, medium_,
+                              medium_.stress(p));
+      };
+    }
     for (int axis = 0; axis < dim - 1; ++axis) {
       equations.boundaries[2 * axis] = this->mirror_plane(axis);
       auto& side = equations.boundaries[2 * axis + 1];
@@ -149,7 +220,10 @@ class ElasticLayer : public BoxModel<dim> {
     return std::max(std::abs(this->load_) / std::pow(h_, dim - 1),
                     std::numeric_limits<double>::min());
   }
-  Stress<dim> closed_part(const Point<dim>& p) const override { return medium_.stress(p); }
+  Stress<dim> closed_part(const Point<dim>& p) const override {
+    const Stress<dim> stress = medium_.stress(p);
+    return medium_.stiffness_at ? stress_of<dim>(medium_.stiffness_at(p), medium_, stress) : stress;
+  }
 
  private:
   Medium<dim> medium_;
@@ -163,7 +237,7 @@ class ElasticHalfSpace : public BoxModel<dim> {
  public:
   ElasticHalfSpace(const std::string& name, const Settings& s, const Medium<dim>& medium)
       : BoxModel<dim>(name, s, dim == 2 ? 2e-3 : 1e-2, 3),
-        stiffness_(medium.stiffness),
+        medium_(medium),
         depth_(number_of(s, "depth")),
         patch_(nonzero_or(s, "patch", dim == 2 ? 0.05 : 0.02) * depth_),
         cells_(nonzero_or(s, "cells", dim == 2 ? 2 : 1)) {
@@ -205,7 +279,7 @@ class ElasticHalfSpace : public BoxModel<dim> {
 
   ElasticProblem<dim> problem() const override {
     ElasticProblem<dim> equations;
-    equations.stiffness = stiffness_;
+    medium_.put_stiffness(equations);
     for (int axis = 0; axis < dim - 1; ++axis) {
       equations.boundaries[2 * axis] = this->mirror_plane(axis);
       equations.boundaries[2 * axis + 1].fixed.fill(true);
@@ -240,20 +314,33 @@ class ElasticHalfSpace : public BoxModel<dim> {
 
  private:
   static constexpr double kLeastPatch = 1e-4;
-  fe::Stiffness<dim> stiffness_;
+  Medium<dim> medium_;
   double depth_, patch_, cells_;
   int levels_ = 0;
 };
 
+/// The setting that says how deep the model is.
+template <template <int> class Kind>
+constexpr const char* kDepth = "h";
+template <>
+constexpr const char* kDepth<ElasticHalfSpace> = "depth";
+
+template <template <int> class Kind, int dim>
+std::unique_ptr<Model> make_elastic_in(const std::string& name, const Settings& s) {
+  return std::make_unique<Kind<dim>>(
+      name, s,
+      s.at("moduli").empty() ? isotropic<dim>(s) : graded<dim>(s, number_of(s, kDepth<Kind>)));
+}
+
 template <template <int> class Kind>
 std::unique_ptr<Model> make_elastic(const std::string& name, const Settings& s) {
-  if (s.at("dim") == "3") return std::make_unique<Kind<3>>(name, s, isotropic<3>(s));
-  return std::make_unique<Kind<2>>(name, s, isotropic<2>(s));
+  return s.at("dim") == "3" ? make_elastic_in<Kind, 3>(name, s) : make_elastic_in<Kind, 2>(name, s);
 }
 
 template <template <int> class Kind>
 std::unique_ptr<Model> make_transverse(const std::string& name, const Settings& s) {
-  return std::make_unique<Kind<3>>(name, s, transverse(name, s));
+  return std::make_unique<Kind<3>>(name, s,
+                                   space_of(number_of(s, "F"), transverse_moduli(name, s)));
 }
 
 const fe::ModelRow rows[] = {{"fe_elastic_layer", make_elastic<ElasticLayer>},

@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <limits>
 #include <memory>
-#include <optional>
 
 #include "continuum/model.h"
-#include "dem/shared/number.h"
+#include "continuum/number_table.h"
 
 namespace grainfield::continuum::osl {
 namespace {
@@ -20,66 +18,14 @@ namespace {
 /// step.
 constexpr double kTolerance = 1e-6;
 
-[[noreturn]] void refuse(const std::string& file, int line, const std::string& why) {
-  throw BadParameter(fmt::format("{}:{}: {}", file, line, why));
-}
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> out(1);
-  for (const char ch : text) {
-    if (ch == ',')
-      out.emplace_back();
-    else if (ch != ' ' && ch != '\t' && ch != '\r')
-      out.back() += ch;
-  }
-  return out;
-}
-
-bool is_comment(const std::string& text) { return text.empty() || text == "\r" || text[0] == '#'; }
-
-std::vector<std::string> read_header(const std::string& file, int line, const std::string& text,
-                                     const std::vector<std::string>& fields) {
-  auto names = split(text);
+std::string wrong_names(const std::vector<std::string>& names,
+                        const std::vector<std::string>& fields) {
   bool good = names.size() >= 3 && names[0] == "x" && names[1] == "y";
   for (std::size_t i = 2; good && i < names.size(); ++i)
     good = std::find(fields.begin(), fields.end(), names[i]) != fields.end() &&
            std::find(names.begin(), names.begin() + static_cast<long>(i), names[i]) ==
                names.begin() + static_cast<long>(i);
-  if (!good)
-    refuse(file, line,
-           fmt::format("the header is \"{}\"; allowed: x,y and one or more of {}", text,
-                       fmt::join(fields, ",")));
-  return names;
-}
-
-// It is read more than once, and a pipe would have to be waited for.
-void require_regular_file(const std::string& file) {
-  std::error_code error;
-  const auto there = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(there) || std::filesystem::is_regular_file(there)) return;
-  throw BadParameter(
-      fmt::format("{}: is {}, expected a file", file,
-                  std::filesystem::is_directory(there) ? "a folder" : "a pipe or device"));
-}
-
-struct Row {
-  int line;
-  std::vector<double> values;
-};
-
-Row read_row(const std::string& file, int line, const std::string& text, std::size_t columns,
-             bool may_lack) {
-  Row row{line, {}};
-  for (const auto& word : split(text)) {
-    const std::optional<double> number = parse_number(word);
-    row.values.push_back(number.value_or(0));
-    const bool lacks = may_lack && row.values.size() > 2 && std::isnan(row.values.back());
-    if (!number || !(lacks || std::isfinite(*number)))
-      refuse(file, line, fmt::format("\"{}\" is not a finite number", word));
-  }
-  if (row.values.size() != columns)
-    refuse(file, line, fmt::format("{} numbers, expected {}", row.values.size(), columns));
-  return row;
+  return good ? "" : fmt::format("allowed: x,y and one or more of {}", fmt::join(fields, ","));
 }
 
 }  // namespace
@@ -93,27 +39,18 @@ FieldMap read_field_map(const std::string& file, const std::vector<std::string>&
   FieldMap map;
   map.file = file;
   if (file.empty()) return map;
-  require_regular_file(file);
-  std::ifstream stream(file);
-  if (!stream) throw BadParameter(file + ": cannot be opened");
-  std::vector<std::string> names;
-  std::vector<Row> rows;
-  int line = 0;
-  for (std::string text; std::getline(stream, text);) {
-    ++line;
-    if (is_comment(text)) continue;
-    if (names.empty())
-      names = read_header(file, line, text, fields);
-    else
-      rows.push_back(read_row(file, line, text, names.size(), may_lack));
-  }
+  const NumberTable table = read_number_table(
+      file, [&](const std::vector<std::string>& names) { return wrong_names(names, fields); },
+      may_lack ? 2 : std::numeric_limits<std::size_t>::max());
+  const std::vector<NumberRow>& rows = table.rows;
   std::size_t nx = 0;
   while (nx < rows.size() && rows[nx].values[1] == rows[0].values[1]) ++nx;
   const std::size_t ny = nx > 0 ? rows.size() / nx : 0;
   if (nx < 2 || ny < 2 || nx * ny != rows.size())
-    refuse(file, line,
-           fmt::format("{} nodes with {} in the first row form no grid; allowed: 2 x 2 or more",
-                       rows.size(), nx));
+    refuse_line(
+        file, table.last_line,
+        fmt::format("{} nodes with {} in the first row form no grid; allowed: 2 x 2 or more",
+                    rows.size(), nx));
   map.nx = static_cast<int>(nx);
   map.ny = static_cast<int>(ny);
   map.x0 = rows[0].values[0];
@@ -121,19 +58,20 @@ FieldMap read_field_map(const std::string& file, const std::vector<std::string>&
   map.dx = (rows[nx - 1].values[0] - map.x0) / static_cast<double>(nx - 1);
   map.dy = (rows.back().values[1] - map.y0) / static_cast<double>(ny - 1);
   if (!(map.dx > 0 && map.dy > 0 && std::isfinite(map.dx) && std::isfinite(map.dy)))
-    refuse(file, rows[1].line, "x and y of the nodes must ascend, x fastest");
+    refuse_line(file, rows[1].line, "x and y of the nodes must ascend, x fastest");
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double x = map.x0 + static_cast<double>(k % nx) * map.dx,
                  y = map.y0 + static_cast<double>(k / nx) * map.dy;
     const auto& v = rows[k].values;
     if (std::abs(v[0] - x) > kTolerance * map.dx || std::abs(v[1] - y) > kTolerance * map.dy)
-      refuse(file, rows[k].line,
-             fmt::format("node ({}, {}) is not on the regular grid, which has ({:.10g}, {:.10g}) "
-                         "here",
-                         v[0], v[1], x, y));
+      refuse_line(
+          file, rows[k].line,
+          fmt::format("node ({}, {}) is not on the regular grid, which has ({:.10g}, {:.10g}) "
+                      "here",
+                      v[0], v[1], x, y));
   }
-  for (std::size_t c = 2; c < names.size(); ++c) {
-    Eigen::VectorXd& values = map.values[names[c]];
+  for (std::size_t c = 2; c < table.names.size(); ++c) {
+    Eigen::VectorXd& values = map.values[table.names[c]];
     values.resize(static_cast<Eigen::Index>(rows.size()));
     for (std::size_t k = 0; k < rows.size(); ++k)
       values[static_cast<Eigen::Index>(k)] = rows[k].values[c];
@@ -143,15 +81,9 @@ FieldMap read_field_map(const std::string& file, const std::vector<std::string>&
 
 std::vector<std::string> map_columns(const std::string& file) {
   if (file.empty()) return {};
-  require_regular_file(file);
-  std::ifstream stream(file);
-  for (std::string text; std::getline(stream, text);) {
-    if (is_comment(text)) continue;
-    auto names = split(text);
-    names.erase(names.begin(), names.begin() + std::min<long>(2, static_cast<long>(names.size())));
-    return names;
-  }
-  return {};
+  std::vector<std::string> names = table_columns(file);
+  names.erase(names.begin(), names.begin() + std::min<long>(2, static_cast<long>(names.size())));
+  return names;
 }
 
 double FieldMap::at(const std::string& name, double x, double y) const {

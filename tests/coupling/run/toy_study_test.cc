@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "coupling/case/keys.h"
 #include "coupling/case/study.h"
 #include "coupling/result/tables.h"
 #include "coupling/run/ranks.h"
