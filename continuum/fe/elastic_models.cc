@@ -70,7 +70,7 @@ struct Medium {
   fe::Stiffness<dim> stiffness;
   std::function<Stress<dim>(const Point<dim>&)> stress = {};
   std::function<Vector<dim>(const Point<dim>&)> displacement = {};
-  /// Of a table, with the inverse of its stiffness at the surface.
+  /// The stiffness of a table at a place, and its inverse at the surface.
   std::function<fe::Stiffness<dim>(const Point<dim>&)> stiffness_at = {};
   fe::Stiffness<dim> compliance = {};
 

@@ -20,7 +20,7 @@ OptionUnits option_length();
 OptionUnits option_angle();
 OptionUnits option_force();
 OptionUnits option_time();
-/// Of grains, in the plane per area too: where lengths across count as 1 m.
+/// Units of grains, in the plane per area too: where lengths across count as 1 m.
 OptionUnits weight_per_volume(int dim);
 OptionUnits mass_per_volume();
 

@@ -39,14 +39,14 @@ class Cluster {
 /// tension positive. Between two members: an inner contact; with another grain or a wall: an outer
 /// one.
 struct ClusterForces {
-  /// Of every member the resultant of its outer contacts (outer) its centre (Wellmann eq. 29).
+  /// Sum over members: resultant of the outer contacts (outer) centre (Wellmann eq. 29).
   Eigen::Matrix3d boundary = Eigen::Matrix3d::Zero();
-  /// Of every inner contact the force (outer) the branch.
+  /// Sum over inner contacts: force (outer) branch.
   Eigen::Matrix3d inside = Eigen::Matrix3d::Zero();
   /// What the members' forces leave: resultant of all contacts (outer) centre. Always
   /// boundary = inside + unbalanced; at rest without gravity it is 0.
   Eigen::Matrix3d unbalanced = Eigen::Matrix3d::Zero();
-  /// Of every contact of a member the force (outer) the way from its centre to the contact: what
+  /// Sum over contacts of members: force (outer) way from the centre to the contact, which
   /// belongs to the members' own volumes.
   Eigen::Matrix3d grains = Eigen::Matrix3d::Zero();
   int boundary_grains = 0;  ///< members with an outer contact

@@ -16,7 +16,7 @@ double gap_of(const dem::Snapshot& s, const dem::Contact& c);
 /// The point of a disk, sphere, polygon or superellipsoid that is farthest along a unit vector, m.
 dem::Vec3 farthest_along(const dem::Grain& grain, const dem::Vec3& direction);
 
-/// Of two bodies in space, superellipsoids or spheres, at `branch` from the first to the second, m.
+/// Contact of two superellipsoids or spheres in space, at `branch` from first to second, m.
 struct CommonPlane {
   dem::Vec3 normal, point;  ///< unit, from the first to the second; from the first's centre, m
   double gap = 0;           ///< m; below 0: overlap

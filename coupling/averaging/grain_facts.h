@@ -7,7 +7,7 @@
 
 namespace grainfield::coupling {
 
-/// Of one grain; tensors are 3 x 3, with zeros in the third row and column in 2D.
+/// Facts of one grain; tensors are 3 x 3, with zeros in the third row and column in 2D.
 struct GrainFacts {
   const dem::Grain* grain = nullptr;
   int contacts = 0;          ///< with grains and walls

@@ -13,7 +13,7 @@ class PointCells {
  public:
   using Vector = Eigen::Matrix<double, D, 1>;
 
-  /// Of the points [first, last) of `points`; `cell`: side of a cell, m, made larger while there
+  /// Cells of the points [first, last) of `points`; `cell`: side, m, made larger while there
   /// would be more cells than about four per point.
   PointCells(const Eigen::MatrixXd& points, Eigen::Index first, Eigen::Index last, double cell)
       : cell_(cell) {

@@ -16,7 +16,7 @@ struct Failure {
   std::vector<std::string> mistakes = {};  ///< several mistakes, a line each; else empty
 };
 
-/// Of an exception in flight, which must not be null.
+/// The failure of an exception in flight, which must not be null.
 Failure failure_of(const std::exception_ptr& error);
 
 }  // namespace grainfield::coupling

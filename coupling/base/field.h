@@ -46,7 +46,7 @@ struct Field {
   std::string word(const std::string& attribute) const;
   /// An attribute that is a number, the mean of one per realization; nan: there is none.
   double number(const std::string& attribute) const;
-  /// Of import-field, not of grains.
+  /// Whether import-field made it, not grains.
   bool is_measured() const { return word("method") == "measured"; }
   /// In the frame of heaps, apex at the origin; its lengths may be over the height.
   bool is_of_heap() const { return word("frame") == "heap"; }

@@ -68,7 +68,7 @@ class SectionKeys {
   void remarked() { keys_.back().remarked = true; }
   /// The last key means something in three dimensions only.
   void space() { keys_.back().space = true; }
-  /// Of the last key's words, those that hold in two or in three dimensions only.
+  /// Names the last key's words that are valid in two or in three dimensions only.
   void words_of_dimensions(std::vector<std::string> plane, std::vector<std::string> space) {
     keys_.back().plane_words = std::move(plane);
     keys_.back().space_words = std::move(space);

@@ -76,7 +76,7 @@ bool may_be_in_space(const std::string& study);
 
 /// "number", "integer", "boolean", "word", "text", "list of numbers", "list of words".
 std::string type_name(const Key& key);
-/// Of a list: "one or more, each once"; empty for other keys.
+/// What a list may hold: "one or more, each once"; empty for other keys.
 std::string entries_allowed(const Key& key);
 /// "0 to 2", "0, or 1e-06 to 1000", "smooth | rough", "any finite number". Of a key whose studies
 /// have words of their own those of this one; of all where it has none.

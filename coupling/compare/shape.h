@@ -13,7 +13,7 @@ struct ProfileShape {
   double integral = 0;  ///< trapezoidal over x
 };
 
-/// Of values (positive where it matters, e.g. -sigma_yy) at ascending x. `error`: standard errors
+/// Shape of values (positive where it matters: -sigma_yy) at ascending x. `error`: standard errors
 /// or empty. A local maximum counts as a peak when its prominence (height above the higher of the
 /// two saddles that separate it from higher ground) exceeds the larger of 2 standard errors there
 /// and 5 % of the largest value. Points that are nan are left out. Throws std::invalid_argument for

@@ -13,7 +13,7 @@ struct Sample {
   Eigen::Vector3d stress{0, 0, 0}, strain{0, 0, 0};  ///< xx, yy, xy
 };
 
-/// Of one realization: points with a weight above 0 and no nan.
+/// Points of one realization with a weight above 0 and no nan.
 using Samples = std::vector<Sample>;
 
 /// One entry per realization. Throws as check_increments().

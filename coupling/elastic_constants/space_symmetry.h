@@ -52,7 +52,7 @@ struct SpaceSymmetry {
   std::string symmetry() const;
 };
 
-/// Of all realizations together. Throws as space_moduli() and bootstrap().
+/// Symmetry of all realizations together. Throws as space_moduli() and bootstrap().
 SpaceSymmetry space_symmetry(const std::vector<SpaceIncrements>& realizations,
                              const ElasticOptions& options);
 

@@ -18,10 +18,10 @@ struct PackingTables {
 /// column for: superellipsoids, walls of other shapes, periodic cells.
 PackingTables packing_tables(const dem::Snapshot& packing);
 
-/// Of STEM-grains.vtu, STEM-contacts.vtu and STEM-chains.vtu beside it: grains coloured by their
+/// Script for STEM-grains.vtu, STEM-contacts.vtu and STEM-chains.vtu: grains coloured by their
 /// pressure (spheres as balls of their radius), contacts by their normal force, chains hidden.
 std::string paraview_of_packing(const std::string& stem, const dem::Snapshot& packing);
-/// Of STEM.vtu beside it, coloured by the column, or the first where there is none of that name.
+/// Script for STEM.vtu, coloured by the column, or the first where there is none of that name.
 std::string paraview_of_field(const std::string& stem, const Field& field,
                               const std::string& column);
 

@@ -122,7 +122,7 @@ std::string data_of(const dem::Snapshot& s, const LammpsIds& ids) {
   return out;
 }
 
-/// Of the normal forces between spheres, J: what rest is measured by. 0 before they touch.
+/// Energy of the normal forces between spheres, J: measure of rest. 0 before they touch.
 double elastic_energy(const dem::Snapshot& s, const std::string& law) {
   const double share = law == "hertz" ? 0.4 : 0.5;  // of force times depth
   double out = 0;

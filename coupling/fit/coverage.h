@@ -21,7 +21,7 @@ struct CoverageOptions {
   int threads = 1;  ///< the bits do not depend on it
 };
 
-/// Of one constant, over the draws in which neither it nor that of the rest is at a bound. The rest
+/// Coverage of one constant, over draws where neither it nor the rest's is at a bound. The rest
 /// have an error, too: intervals of n out of N are wider by sqrt(1 + n / (N - n)).
 struct ConstantCoverage {
   std::string model, parameter;
@@ -32,7 +32,7 @@ struct ConstantCoverage {
   double covariance_error = 0, jackknife_error = 0;  ///< root mean squares of those quoted
 };
 
-/// Of the verdict, over the draws of one size.
+/// Coverage of the verdict, over the draws of one size.
 struct VerdictCoverage {
   int size = 0, draws = 0;
   int named = 0;  ///< draws in which the best model was distinguishable from the others

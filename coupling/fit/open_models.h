@@ -13,7 +13,7 @@ namespace grainfield::coupling {
 /// What the specimen tells a model of the registry.
 using FactsOf = std::function<RunFacts(const std::string& registry)>;
 
-/// Of keys that take them.
+/// What keys say that accept open models.
 inline constexpr const char* kOpenModels =
     "NAME:p=free,q=0.3 or LABEL=NAME:... of a closed model of the plane that `grainfield model` "
     "lists";

@@ -115,7 +115,7 @@ class Assembly {
     double lowest = std::numeric_limits<double>::infinity();  ///< gap of the lowest grain, m
     dem::Vec3 towards{0, 0, 0};  ///< sum of the directions from their points to their grains
   };
-  /// Of the normals that the files give.
+  /// Counts of the normals that the files give.
   struct GivenNormals {
     long long all = 0, not_unit = 0, at_walls = 0, across = 0;
     std::string first_not_unit, first_across;
@@ -286,7 +286,7 @@ class Assembly {
   /// Counts a contact whose point is far off the surface of one of its bodies that is not round.
   void check_point_of_shapes(const dem::Contact& contact);
   void set_image(ContactRow& row, bool has_normal, bool has_point) const;
-  /// Of the images of a pair that touch, the one towards which `direction` points; the nearest
+  /// The touching image of a pair towards which `direction` points; the nearest
   /// where none does.
   std::array<int, 3> image_towards(const dem::Contact& contact, const dem::Vec3& direction) const;
   bool check_pair_distance(const ContactRow& row, bool has_point);

@@ -19,7 +19,7 @@ struct NumberSigns {
   bool decimal_commas = false;  ///< else points
   std::string doubt;  ///< why they may part thousands, a sentence; empty: no doubt
 };
-/// Of the first rows of the table. Commas are those of decimals where no number has a point; beside
+/// Signs of the table's first rows. Commas are decimal where no number has a point; beside
 /// separating commas they stand in quotation marks.
 NumberSigns number_signs(Lines& lines, const ForeignTable& table);
 

@@ -22,7 +22,7 @@ std::string tension_in(const PackingCheck& check);
 /// `tension_in` aside.
 std::vector<std::string> warnings_of(const PackingCheck& check);
 
-/// Of the free grains; nan without one.
+/// Sizes of the free grains; nan without one.
 struct GrainSizes {
   double density = 0;             ///< all mass over all volume, kg/m3 (2D kg/m2)
   double density_as_spheres = 0;  ///< over the volume of spheres of their radii, kg/m3

@@ -11,7 +11,7 @@ namespace grainfield::coupling {
 /// Ids of grains, or pairs of bodies in any order; sorted, each once.
 using RowKeys = std::vector<std::string>;
 
-/// Of the rows of a table. Empty where no column tells them or where the table cannot be read.
+/// Keys of the rows of a table. Empty without a column of them, or if the table cannot be read.
 RowKeys row_keys(const ForeignTable& table, TableKind kind, ColumnNames& names,
                  TableReader& reader);
 

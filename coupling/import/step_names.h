@@ -23,7 +23,7 @@ struct NamedSteps {
   std::vector<std::string> notes;               ///< how they were told where it is not plain
   std::vector<std::string> warnings;            ///< what does not belong together by its numbers
 };
-/// Of files that hold one state each: of the numbers in their names the one in which they differ.
+/// Steps of files with one state each: the number in which their names differ.
 /// Files that have no grain in common are pieces of one step (of several processors). Throws
 /// std::invalid_argument where two numbers differ and the grains do not tell which is the step.
 NamedSteps steps_of_names(const std::vector<NamedFile>& files);

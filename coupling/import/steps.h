@@ -77,7 +77,7 @@ class StepList {
   /// Kinds of tables of contacts: by their columns.
   std::vector<const std::vector<std::string>*> contact_kinds_;
   std::map<std::string, std::string> series_;  ///< of each file
-  /// Of each series the run that it continues, by the name of one of them.
+  /// The run that each series continues, by the name of one of them.
   std::map<TableKind, std::map<std::string, std::string>> run_of_;
   /// Runs that are parts of one table: a step has all of them or none.
   std::map<TableKind, std::vector<std::set<std::string>>> parts_;

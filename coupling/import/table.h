@@ -43,7 +43,7 @@ struct ForeignTable {
   TableKind kind = TableKind::unknown;  ///< unknown: told from the columns
   std::optional<long long> step;        ///< time step of a dump
   std::optional<double> time;           ///< s, where the file says it
-  /// Of a dump: all of its edges, and which axes are periodic. One for all steps where it is the
+  /// All edges of a dump, and which axes are periodic. One for all steps where it is the
   /// same.
   std::shared_ptr<const dem::Cell<3>> box;
   std::shared_ptr<const std::vector<std::string>> columns;  ///< names in the file's order

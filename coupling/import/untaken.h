@@ -11,7 +11,7 @@ struct UntakenColumns {
   std::string note;                   ///< names all of them; empty: none
   std::vector<std::string> warnings;  ///< of those whose names tell of something that counts
 };
-/// Of a table of `kind`, once all columns that count were looked up. Names of forces and torques
+/// What a table of `kind` holds besides the columns looked up. Names of forces and torques
 /// between grains, of velocities, images, shapes, orientations and units are warned of, unless the
 /// table tells the same by a column that was taken.
 UntakenColumns untaken_columns(const ForeignTable& table, const TableColumns& columns,

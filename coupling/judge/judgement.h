@@ -95,7 +95,7 @@ struct Judgement {
   std::string best;
   /// Every other model is distinguishable from `best`, of its family, or contains it.
   Answer distinguishable = Answer::unknown;
-  /// Of the models that cannot be distinguished, where they have one; else "not distinguishable".
+  /// Equations of the models that cannot be distinguished, or "not distinguishable".
   std::string equations;
   Position position;
   /// The nearest model of another family that does not contain the best; empty: there is none.

@@ -26,10 +26,10 @@ struct PointSet {
 
 class ObservationOperator {
  public:
-  /// Of sets of points, all in the plane or all in space. Below the base, at -depth, nodes take the
+  /// For sets of points, all in the plane or all in space. Below the base, at -depth, nodes use the
   /// value at the base; depth 0: there is no base.
   ObservationOperator(const std::vector<PointSet>& sets, double depth);
-  /// Of a heap: through the kernel in the plane. Heaps have kinks and no singularity, so that few
+  /// For a heap, through the kernel in the plane. Heaps have kinks and no singularity, so that few
   /// nodes do.
   static ObservationOperator of_heap(const Eigen::MatrixXd& points, const Kernel& kernel,
                                      double depth = 1);

@@ -169,7 +169,7 @@ class Engine {
     forces.remove_force(name);
   }
   std::vector<std::string> forces() const { return dem::added_forces(*engine_).added_forces(); }
-  /// Of the start, that nobody has given yet.
+  /// What the start lacks, as nobody has given it yet.
   const std::vector<std::string>& missing() const { return missing_; }
   /// After the present step, step() raises KeyboardInterrupt. Returns whether it was asked before.
   bool interrupt() { return interrupted_.exchange(true); }

@@ -17,7 +17,7 @@ enum class Extreme { strongest, weakest };
 std::vector<std::size_t> extreme_contacts(const dem::Snapshot& snapshot, Extreme which,
                                           double alike = 1e-6, double least = 1e-6);
 
-/// Of these, the share whose normal is within 15 degrees of the horizontal.
+/// Share of these contacts whose normal is within 15 degrees of the horizontal.
 double horizontal_share(const dem::Snapshot& snapshot, const std::vector<std::size_t>& contacts);
 
 /// The packing with lines between the centres of these contacts' grains.

@@ -17,7 +17,7 @@ struct SweepDifference {
   double p_holm = 0;         ///< the same, corrected by Holm for all that are compared
 };
 
-/// Of every column that has a standard error over `least_for_significance` realizations or more in
+/// Differences in columns with a standard error over `least_for_significance` realizations in
 /// both members; members are taken as independent, which is on the safe side where the same seeds
 /// make them alike.
 std::vector<SweepDifference> sweep_differences(const std::vector<OverviewColumn>& columns,

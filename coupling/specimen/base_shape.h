@@ -15,7 +15,7 @@ struct BaseShape {
   std::string word;  ///< dip: on either side there is more than axis/0.98, not at the axis; else
                      ///< plateau: quarter >= 0.98 axis; else peak
 };
-/// Of pressures at ascending x of which some lie on either side of 0; nan points are left out.
+/// Shape of pressures at ascending x, some on either side of 0; nan points are left out.
 /// `half_width`: of the base. Throws std::invalid_argument where no value lies near the axis.
 BaseShape base_shape(const Eigen::VectorXd& x, const Eigen::VectorXd& pressure, double half_width);
 

@@ -7,7 +7,7 @@
 
 namespace grainfield::coupling {
 
-/// Of every grain, whether a chain of contacts ties it to a wall or a fixed grain; where none is
+/// Whether a chain of contacts ties each grain to a wall or a fixed grain; where none is
 /// tied so (contacts with the floor not known), whether it is in the largest group of grains that
 /// touch one another. Without contacts nothing is known: all.
 std::vector<bool> carried_grains(const dem::Snapshot& snapshot);

@@ -55,7 +55,7 @@ struct Stretch {
 
 /// Line source (Roul 3.1.2): the part of `last`, where the last layer fell, that is still a
 /// plateau: between the outermost columns that are not more than `drop` below the median of all.
-/// Of length 0 when no column lies in `last`.
+/// The plateau; its length is 0 when no column lies in `last`.
 Stretch plateau_of(const Surface& surface, const Stretch& last, double drop);
 
 }  // namespace grainfield::coupling

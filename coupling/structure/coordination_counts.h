@@ -6,7 +6,7 @@
 
 namespace grainfield::coupling {
 
-/// Of the free grains. A contact with a wall or fixed grain counts for the free grain.
+/// Contacts of the free grains. One with a wall or fixed grain counts for the free grain.
 struct CoordinationCounts {
   int grains = 0;
   int rattlers = 0;               ///< grains that bear nothing (grain_facts.h)

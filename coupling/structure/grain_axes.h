@@ -6,7 +6,7 @@
 
 namespace grainfield::coupling {
 
-/// Of the free grains of a 2D snapshot, in its order.
+/// Axes of the free grains of a 2D snapshot, in its order.
 struct GrainAxes {
   Eigen::VectorXd inertia_angle_deg;  ///< major axis of the inertia tensor (theta_xx = integral of
                                       ///< y y), from x, (-90, 90]; nan where there is none (disks)

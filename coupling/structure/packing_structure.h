@@ -14,7 +14,7 @@
 
 namespace grainfield::coupling {
 
-/// Of one grain, from its contacts; angles in degrees from x, nan where there is none.
+/// Structure about one grain, from its contacts; angles in degrees from x, nan: there is none.
 struct GrainStructure {
   int contacts = 0;
   bool rattler = false;

@@ -25,7 +25,7 @@ struct TensorAxes {
   double angle_deg(int k = 0) const;
 };
 
-/// Of the symmetric part of the tensor. nan in it: nan everywhere.
+/// Axes of the symmetric part of the tensor. nan in it: nan everywhere.
 TensorAxes tensor_axes(const Eigen::Matrix3d& tensor, int dim);
 TensorAxes tensor_axes(double xx, double yy, double xy);
 

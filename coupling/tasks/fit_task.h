@@ -50,7 +50,7 @@ struct FitOutcome {
 /// Fits the models to the heaps and writes fits.csv/.md/.tex, profiles.csv/.md/.tex, fit.toml (the
 /// settings, every default spelled out), report.html and summary.json into the folder, and
 /// coverage.md where asked for.
-/// Of a file without a group: its snapshots named "pile" where there are such, else all; or its one
+/// Fits, of a file without group, its snapshots named "pile" where there are such, else all; or its
 /// field of a heap. Throws std::invalid_argument for inputs that are neither or of both kinds,
 /// several time steps of one packing, and what reading, averaging and fitting throw.
 FitOutcome run_fit(const FitRequest& request);

@@ -21,9 +21,9 @@ struct MeasuredHeap {
   double left = 0, right = 0;  ///< from the axis to the feet, m
   double weight = 0;           ///< of the wedge, N/m; of the cone, N
 
-  /// Of what stands above [from, to] of the base of the wedge, N/m.
+  /// Weight of what is above [from, to] of the base of the wedge, N/m.
   double weight_above(double from, double to) const;
-  /// Of what stands above the base of the cone out to this radius, N.
+  /// Weight of what is above the base of the cone out to this radius, N.
   double weight_within(double radius) const;
 };
 /// Nothing for another field.
@@ -47,7 +47,7 @@ struct CarriedShare {
   double least = 1, most = 1;
   std::string instead;  ///< the option with which the share is 1: "--rho-g 13950"
 };
-/// Of a measured heap or response; nothing where fewer than five places lie on one level, or no
+/// Share of a measured heap or response; nothing where fewer than five places share a level, or no
 /// load is known. Between places the pressures are straight; in space they are those of rings
 /// about the axis.
 std::optional<CarriedShare> carried_share(const Field& field);

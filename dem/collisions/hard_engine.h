@@ -67,7 +67,7 @@ class HardEngine {
   Body<D> body(std::size_t grain) const;
   /// At rest on a floor, and when the series of its flights has ended, s; kNever: it flies.
   double settled(std::size_t grain) const;
-  /// Of the grains, J; without gravity's.
+  /// Kinetic energy of the grains, J; without gravity's.
   double kinetic_energy() const;
   /// Kinetic energy lost since the start in collisions and by sliding, less what grains got that
   /// were pressed together, J. With moving walls: in the walls' frames.

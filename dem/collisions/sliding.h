@@ -12,7 +12,7 @@ struct Sliding {
   double time = 0;                                 ///< until it rolls, s; 0: it does already
 };
 
-/// Of a grain on the plane with that unit normal, which presses with `gravity` (m/s2) times its
+/// Slides a grain on the plane with that unit normal, which presses with `gravity` (m/s2) times its
 /// mass: friction mu m g acts against its slip s, which falls at mu m g (1/m + r^2/I), as long as
 /// there is any. Slip below `least` of the speeds is none.
 template <int D>

@@ -93,7 +93,7 @@ class Blocks {
   const PairsInOrder& incoming(int rank) const { return threads_[rank].incoming; }
   /// The pairs of this block's rows but for their tails; second grains may sleep.
   const PairsInOrder& inside(int rank) const { return threads_[rank].inside; }
-  /// Of rows without images, and of those that end with some. The first ones end with one of no
+  /// Ends of rows without images, and of those with some. The first ones end with one of no
   /// row.
   const std::vector<RowTail>& tails(int rank) const { return threads_[rank].tails; }
   const std::vector<RowTail>& across(int rank) const { return threads_[rank].across; }

@@ -25,18 +25,18 @@ struct NearPair {
   Shape feature;  ///< of the shapes: where the narrow phase starts
 };
 
-/// Of bodies [0, n) in the order of the bodies; a second grain may lie behind them (asleep). Such
+/// Contacts of bodies [0, n) in their order; a second grain may lie behind them (asleep). Such
 /// pairs come first in a row or behind those of the awake.
 template <int D, class Law, class Shape>
 struct ContactList {
   using Pair = NearPair<Law, Shape>;
 
   Rows<Pair> pairs, walls;
-  /// Of the second grains, by pair; those that are images come last in a row. Empty without a cell.
+  /// Images of the second grains, by pair; images come last in a row. Empty without a cell.
   std::vector<PairImage> images;
   std::vector<ContactForce<D>> pair_forces, wall_forces;  ///< of the last step of step(n)
   std::vector<ForceSum<D>> felt;  ///< by sleepers, by pair, since the last search
-  /// Of the walls' contacts in the step before, towards the grain; 0: none, or a plane at rest.
+  /// Normals of wall contacts in the step before, to the grain; 0: none, or a plane at rest.
   std::vector<VectorOf<D>> wall_normals;
   Blocks blocks;  ///< not in a checkpoint: divide() makes them
 
@@ -64,7 +64,7 @@ struct ContactList {
     felt.resize(static_cast<std::size_t>(pairs.size()));
     felt.resize(idle);
   }
-  /// Of pairs: the list is not that of the last step.
+  /// Sets the forces of pairs to 0: the list is not that of the last step.
   void forget_forces() { pair_forces.assign(pair_forces.size(), {}); }
 
   /// Directions of contacts with walls that have a memory: remembers(k).

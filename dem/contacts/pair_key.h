@@ -8,13 +8,13 @@ namespace grainfield::dem {
 
 using PairKey = std::uint64_t;
 
-/// Of two grains; ids are below 2^31.
+/// Key of two grains; ids are below 2^31.
 inline PairKey pair_key(std::int64_t a, std::int64_t b) {
   const auto low = static_cast<PairKey>(std::min(a, b)),
              high = static_cast<PairKey>(std::max(a, b));
   return low << 32 | high;
 }
-/// Of a grain and a wall: walls count down from the largest number, where no id comes.
+/// Key of a grain and a wall: walls count down from the largest number, where no id comes.
 inline PairKey wall_key(std::int64_t id, int wall) {
   return static_cast<PairKey>(id) << 32 | (0xFFFFFFFFu - static_cast<PairKey>(wall));
 }

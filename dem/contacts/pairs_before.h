@@ -30,7 +30,7 @@ class PairsBefore {
     where_.resize(ids.size());
     for (std::size_t i = 0; i < ids.size(); ++i) where_[ids[i]] = static_cast<int>(i);
   }
-  /// Of the grains with these ids.
+  /// The pair of the grains with these ids.
   Found find(std::int64_t first, std::int64_t second) const {
     const int a = where_[first], b = where_[second];
     const int row = std::min(a, b), other = std::max(a, b);

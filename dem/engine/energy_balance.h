@@ -55,7 +55,7 @@ struct ContactParts {
   }
 };
 
-/// Of one contact.
+/// Energies of one contact.
 template <int D>
 struct Account {
   ContactParts<D> before;  ///< in the step before
@@ -154,7 +154,7 @@ void book(Account<D>& account, const Rule& rule, const Body<D>& a, const Body<D>
   }
 }
 
-/// Of the forces from outside on one grain that are no potential's: damping, an applied force and
+/// Account of outer forces on one grain that have no potential: damping, an applied force and
 /// the caller's own.
 template <int D>
 struct OuterAccount {
@@ -171,7 +171,7 @@ struct EnergyBalance {
   std::vector<Account<D>> pairs, walls;  ///< as the list of contacts has them
   std::vector<OuterAccount<D>> outer;    ///< by grain's id
   ContactLosses gone;                    ///< in contacts before the last search
-  /// Of a frozen contact, by keys; seen from the grain with the lower id.
+  /// A frozen contact by its key, seen from the grain with the lower id.
   struct Frozen {
     PairKey key = 0;
     Account<D> account;

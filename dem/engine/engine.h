@@ -151,7 +151,7 @@ class Engine {
   /// std::invalid_argument naming the wall: a servo without a target and the like (wall_motion.h);
   /// step() throws it for a given speed of more than half the smallest radius a step.
   virtual void set_wall_motion(int wall, const WallMotion& motion) = 0;
-  /// Of the wall with this name. Throws std::invalid_argument when there is none.
+  /// Moves the wall with this name. Throws std::invalid_argument when there is none.
   void set_wall_motion(const std::string& name, const WallMotion& motion);
   /// Where they are, how they move, and the force of all grains on each in the last step.
   virtual std::vector<Wall> walls() const = 0;

@@ -459,7 +459,7 @@ class EngineLoop final : public Engine, public TakesAddedForces {
     return -1;
   }
 
-  /// Of place, speed and spin.
+  /// Whether place, speed and spin are finite.
   template <class Body>
   static bool is_finite(const Body& b) {
     return b.position.allFinite() && std::isfinite(length_of(b.velocity)) &&

@@ -107,7 +107,7 @@ class GrainMotion {
     auto& grains = world_.grains;
     integrator_.begin(grains.bodies[i], grains.memory[i], grains.inertias[i]);
   }
-  /// Of a grain that has moved: its shape is placed, too.
+  /// Whether a moved grain left its margin; its shape is placed, too.
   bool has_left(int i) {
     auto& grains = world_.grains;
     if constexpr (World::Shape::keeps_places) {

@@ -51,7 +51,7 @@ class PairContact {
   virtual void restore(const std::string& checkpoint) = 0;
 };
 
-/// Of the settings only shape, law and friction are used; mass, moments and outline are those of
+/// Contact by the settings' shape, law and friction alone; mass, moments and outline are those of
 /// the grains, their places and motion are not used. Throws std::invalid_argument naming the key
 /// when the law does not go with the shape, or polygons resist rolling.
 std::unique_ptr<PairContact> make_pair_contact(const EngineSettings& settings,

@@ -173,13 +173,13 @@ class Report {
     }
     return m;
   }
-  /// Of a free grain, J: against the flow.
+  /// Kinetic energy of a free grain against the flow, J.
   double kinetic_energy(int i) const {
     const auto& grains = world_.grains;
     return 0.5 * grains.inertias[i].mass * world_.fluctuation(i).squaredNorm() +
            rotational_energy(grains.bodies[i], world_.rotation(i), grains.inertias[i]);
   }
-  /// Of all free grains, J, as Diagnostics has it.
+  /// Potential energy of all free grains, J, as Diagnostics has it.
   double potential_energy() const {
     double sum = 0;
     for (int i = 0; i < world_.grains.size(); ++i) {

@@ -13,7 +13,7 @@ namespace grainfield::dem {
 template <int D>
 struct RollingContacts {
   using Memory = RollingMemory<D>;
-  /// Of a frozen contact, or of a snapshot's until the next search; seen from the grain with the
+  /// Memory of a frozen contact, or a snapshot's until the next search; seen from the grain of
   /// lower id.
   struct Told {
     PairKey key = 0;
@@ -27,7 +27,7 @@ struct RollingContacts {
   void sort() {
     std::sort(told.begin(), told.end(), [](const Told& a, const Told& b) { return a.key < b.key; });
   }
-  /// Of a contact that is in no list; empty when nothing is known of it.
+  /// Memory of a contact that is in no list; empty when nothing is known of it.
   Memory told_of(PairKey key) const {
     const auto it = std::lower_bound(told.begin(), told.end(), key,
                                      [](const Told& a, PairKey b) { return a.key < b; });

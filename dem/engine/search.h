@@ -91,7 +91,7 @@ class Search {
     }
   }
 
-  /// Of the bodies from `awake` on. Reviews ask near_sleepers between searches.
+  /// Bins the bodies from `awake` on. Reviews ask near_sleepers between searches.
   void bin_sleepers() {
     std::vector<Reach<dim>> still;
     still.reserve(world_.grains.bodies.size() - static_cast<std::size_t>(world_.awake));

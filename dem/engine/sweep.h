@@ -427,7 +427,7 @@ class Sweep {
     return sum;
   }
 
-  /// Of pairs from earlier blocks, on their second grains.
+  /// Adds forces of pairs from earlier blocks to their second grains.
   GRAINFIELD_FLATTEN void sum_incoming(int rank, double dt) {
     const auto& contacts = world_.contacts;
     const bool periodic = world_.cell.is_periodic();

@@ -30,7 +30,7 @@ inline void read_spin(const NewGrain& g, const Inertia<2>& inertia, Body<2>& b) 
 inline void write_spring(double spring, Contact& c) { c.spring = spring; }
 inline void read_spring(const Contact& c, double& spring) { spring = c.spring; }
 
-/// Of a contact whose normal has been told, or is known. As vectors and numbers that are the same
+/// Writes memories of a contact whose normal is known, as vectors and numbers that are the same
 /// seen from either grain.
 inline void write_rolling(const RollingMemory<2>& memory, Contact& c) {
   c.rolling_spring = memory.roll * Vec3(-c.normal.y(), c.normal.x(), 0);

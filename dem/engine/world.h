@@ -106,7 +106,7 @@ struct World {
   }
   /// `slot`: any of the wall's.
   const auto& wall_rule(int i, int slot) const { return acting.wall_rule(grains.kinds[i], slot); }
-  /// Of a grain with a half space that stands for a wall.
+  /// Overlap of a grain with a half space that replaces a wall.
   bool overlap_patch(int i, const Body& b, const Patch<dim>& patch, Overlap& o) const {
     if (!acting.overlap(grains.shapes, i, b, patch.plane, o)) return false;
     if constexpr (Shape::offers(Measures::curvature))
@@ -142,7 +142,7 @@ struct World {
     image.velocity += cell.drift(n);
     return image;
   }
-  /// Of grain i as `a` and grain j as `b`, which has been made an image already where it is one.
+  /// Overlap of grain i as `a` and grain j as `b`, which has been made an image where it is one.
   template <class Feature>
   bool overlap(int i, const Body& a, int j, const Body& b, const PairImage& n, Feature& feature,
                Overlap& o) const {

@@ -16,7 +16,7 @@ struct ShapedGrain {
   double radius = 0;  ///< from the centroid to the farthest corner, m
   double area = 0;    ///< m2
   double angle = 0;   ///< rotation to start with, rad; 0 for disks
-  /// Of superellipsoids (engine.h: NewGrain); the radius is from the centre to the farthest point.
+  /// Superellipsoids (engine.h: NewGrain); the radius is from the centre to the farthest point.
   std::array<double, 3> axes{};
   std::array<double, 2> exponents{1, 1};
   std::array<double, 4> orientation{1, 0, 0, 0};

@@ -81,7 +81,7 @@ std::vector<Wall> layer_walls(const PackingSetup& packing, const MaterialSetup& 
 class GrainSupply {
  public:
   static constexpr double kMostDrawn = std::numeric_limits<double>::infinity();
-  /// Of pentagons at most so many are drawn.
+  /// Draws at most `most` pentagons.
   GrainSupply(const PackingSetup& packing, Random& random, double most = kMostDrawn);
 
   /// The next grains, as many as fit side by side into the width by their bounding circles. Throws

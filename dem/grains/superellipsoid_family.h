@@ -23,7 +23,7 @@ ShapedGrain draw_superellipsoid(const SuperellipsoidFamily& family, double size,
 /// Expected volume of one of this size, m3.
 double mean_volume(const SuperellipsoidFamily& family, double size);
 
-/// Of those of this size, m: the least extent that can be drawn, the radius of the sphere of mean
+/// Radii of this size, m: the least extent that can be drawn, the radius of the sphere of mean
 /// volume, and the farthest point that can be drawn.
 struct FamilyRadii {
   double least = 0, mean = 0, most = 0;

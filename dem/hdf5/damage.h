@@ -13,10 +13,10 @@ void prepare();
 /// Why this dataset is not read ("not numbers", "its data lie in another file", "larger than its
 /// file"); empty: it may be read. An extent is bounded by what the file can hold.
 std::string unreadable(hid_t dataset);
-/// Of the file that the object is in, bytes.
+/// Size of the file that the object is in, bytes.
 hsize_t file_size(hid_t object);
 
-/// Of the last call of HDF5, which failed.
+/// Why the last call of HDF5 failed.
 bool checksum_failed();
 bool out_of_memory();
 /// errno of the system call in it that failed for a reason of the moment (means_cannot_read_now);

@@ -88,7 +88,7 @@ class Walk {
   bool out_of_memory() const { return out_of_memory_; }
   /// An attribute is larger than its place.
   bool damaged() const { return damaged_; }
-  /// Of all datasets met, as they claim.
+  /// Size of all datasets met, as they claim.
   double bytes() const { return bytes_; }
 
  private:

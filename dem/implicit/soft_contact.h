@@ -37,7 +37,7 @@ namespace grainfield::dem {
 
 enum class SoftFriction { viscous, coulomb };
 
-/// Of a pair of disks, or of a disk and a wall.
+/// Law of a pair of disks, or of a disk and a wall.
 struct SoftLaw {
   double stiffness = 1e7;  ///< K, N/m
   double damping = 0;      ///< K_D, kg/s
@@ -80,7 +80,7 @@ T clamped(const T& x, const T& limit) {
 
 }  // namespace soft_contact
 
-/// Of i relative to j over the step; the two share out the turn: (r_i a_i + r_j a_j)/(r_i + r_j).
+/// Motion of i relative to j over the step; they share the turn: (r_i a_i + r_j a_j)/(r_i + r_j).
 template <class T>
 struct SoftMotion {
   Eigen::Matrix<T, 2, 1> shift;  ///< u_i - u_j, m
@@ -179,7 +179,7 @@ bool act_at_end(const SoftLaw& law, const SoftStep& step, const T& s1, const Pla
   return true;
 }
 
-/// Of overlaps s_0, s_1 where the two meet in the middle of the step. False: they do not touch.
+/// Forces by overlaps s_0, s_1 where the two meet in mid-step. False: they do not touch.
 template <class T>
 bool act(const SoftLaw& law, double dt, double s0, const T& s1, const Place<T>& at,
          const SoftMemory& memory, double place, const SoftMotion<T>& m, SoftForce<T>& out) {

@@ -83,7 +83,7 @@ struct SoftEnergy {
   double total() const { return kinetic + potential + elastic + springs; }
 };
 
-/// Of disks that touch now.
+/// Disks that touch now.
 struct SoftTouch {
   int i = 0, j = 0;          ///< j = -1 - w: wall w
   VectorOf<2> normal{0, 0};  ///< from i to j, unit
@@ -132,7 +132,7 @@ class SoftDisks {
   const ImplicitTally& tally() const;
   /// Sorted by i, then j; walls first.
   std::vector<SoftTouch> touches() const;
-  /// Of the disks of finite mass.
+  /// Rest of the disks of finite mass.
   SoftRest rest() const;
 
   /// The whole state, in bits, and back into one made of the same scene, settings and number of

@@ -44,7 +44,7 @@ class SoftDisks::Work {
   using Vector = Eigen::VectorXd;
   using Vec = Eigen::Vector2d;
 
-  /// Of a disk: its way and turn in the last step, velocity and spin before it.
+  /// A disk's way and turn in the last step, velocity and spin before it.
   struct Last {
     Vec way{0, 0}, velocity{0, 0};
     double turn = 0, spin = 0;

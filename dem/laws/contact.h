@@ -23,7 +23,7 @@ struct ContactEnergy {
   double total() const { return normal + tangential; }
 };
 
-/// Of a spring of friction with a force, N (a number or a vector), J; without a stiffness none.
+/// Energy of a spring of friction with a force, N (number or vector), J; without stiffness none.
 template <class Tangential>
 inline double spring_energy(const Tangential& spring, double stiffness) {
   return stiffness > 0 ? 0.5 * square_of(spring) / stiffness : 0.0;

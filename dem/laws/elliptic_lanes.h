@@ -17,7 +17,7 @@ struct EllipticNumbers {
   const double* table = nullptr;  ///< EllipseTable::coefficients
 };
 
-/// Of slots 0 to count - 1. The bits do not depend on W.
+/// Forces of slots 0 to count - 1. The bits do not depend on W.
 template <int W>
 void elliptic_forces_of(const EllipticNumbers& law, const OverlapBatch& o, ContactBatch& c,
                         int count);

@@ -65,7 +65,7 @@ struct HertzLaw {
   double effective_young() const { return young / (2 * (1 - poisson * poisson)); }
   double effective_shear() const { return young / (4 * (1 + poisson) * (2 - poisson)); }
 
-  /// Of grains of this radius, at kMostDepth of it: the contact's radius, m, and the stiffness that
+  /// For grains of this radius at kMostDepth of it: the contact's radius, m, and stiffness that
   /// bounds the time step, N/m.
   static constexpr double kMostDepth = 0.02;
   static double most_contact(double radius) { return 0.5 * radius * std::sqrt(2 * kMostDepth); }
@@ -82,7 +82,7 @@ struct HertzLaw {
                      : 40 * 2 * damping * std::sqrt(0.5 * tangential_stiffness(radius) / mass);
     return std::max(normal_rate(mass, radius), spinning);
   }
-  /// Of the normal dashpots alone.
+  /// Rate of the normal dashpots alone.
   double normal_rate(double mass, double radius) const {
     return viscoelastic ? 6 * normal_damping * most_contact(radius)
                         : 12 * 2 * damping * std::sqrt(0.5 * stiffness(radius) / mass);

@@ -36,7 +36,7 @@ struct LinearLaw {
     return std::max(12 * tangential_damping, 3 * normal_damping);
   }
 
-  /// Of a chain of grains edge on edge; the law takes no notice of the edges' width.
+  /// Stiffness of a chain of grains edge on edge; the law does not use the edges' width.
   double edge_stiffness(double /*steepness*/) const { return 4 * normal_stiffness; }
   double edge_rate(double, double) const { return 2 * normal_damping; }
 

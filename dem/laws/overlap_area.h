@@ -34,9 +34,9 @@ struct OverlapAreaLaw : AreaDashpots {
   AreaNumbers area_numbers(double mu, double dt) const {
     return {young, damping, tangential_stiffness(), mu, dt};
   }
-  /// Of the overlap the work of R at constant l, (E/l) * integral of A over the depth. The
+  /// Work of R for the overlap at constant l, (E/l) * integral of A over the depth. The
   /// integral of the lens area is 2/5 A depth for small overlaps (A ~ depth^{3/2}), to O(depth/r).
-  /// Of polygons it is a measure between a corner's 1/3 and the 1/2 of edge on edge.
+  /// For polygons it is a measure between a corner's 1/3 and the 1/2 of edge on edge.
   ContactEnergy energy(const Overlap& o, const SpringMemory<2>& memory) const {
     return {0.4 * young * o.area / o.length * o.depth,
             spring_energy(memory.spring, tangential_stiffness())};

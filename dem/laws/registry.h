@@ -16,7 +16,7 @@ namespace grainfield::dem {
 using AnyLaw =
     std::variant<OverlapAreaLaw, EnergyLaw, LinearLaw, HertzLaw, PenaltyLaw, HertzEllipticLaw>;
 
-/// Of the law that the material names, with its numbers. Throws std::invalid_argument naming
+/// The law that the material names, with its numbers. Throws std::invalid_argument naming
 /// material.law.
 inline AnyLaw law_of(const MaterialSetup& material) {
   return kind_named<AnyLaw>("material.law", material.law,

@@ -31,7 +31,7 @@ struct RollingMemory {
   }
 };
 
-/// Of two materials. Off while both coefficients of friction are 0.
+/// Rolling law of two materials. Off while both coefficients of friction are 0.
 struct RollingLaw {
   double stiffness = 0;           ///< k_r, N/m
   double damping = 0;             ///< g_r, kg/s

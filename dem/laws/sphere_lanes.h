@@ -16,7 +16,7 @@ enum class SphereLawKind { hertz, linear, penalty };
 struct RoundNumbers {
   SphereLawKind kind = SphereLawKind::hertz;
   double normal = 0, tangential = 0;  ///< stiffness; of Hertz' over the contact's radius
-  /// Of dashpots: over the mass (linear), over mass and contact radius (viscoelastic), or
+  /// Rates of dashpots: over the mass (linear), over mass and contact radius (viscoelastic), or
   /// 2 zeta.
   double across = 0, along = 0;
   bool displacement = false, viscoelastic = false;

@@ -31,7 +31,7 @@ class GearIntegrator<2> {
 
   explicit GearIntegrator(double dt) : dt_(dt), inverse_dt_(1 / dt), half_square_(0.5 * dt * dt) {}
 
-  /// Of a grain that has not moved yet: its acceleration where it stands.
+  /// Sets a grain's acceleration where it is, before it has moved.
   void start(const Body<2>& b, Memory& m, const Inertia<2>&, const Load<2>& load) const {
     m.place.x2 = half_square_ * acceleration_of(b, load);
     m.turning.x2 = half_square_ * spin_rate_of(b, load);

@@ -31,7 +31,7 @@ struct RoundStep {
   double local_damping = 0;
 };
 
-/// Of grains list[0] to list[count - 1], ascending, whose inverse moment is above 0. True when one
+/// Moves grains list[0] to list[count - 1], ascending, of inverse moment above 0. True when one
 /// may have left its margin. The bits do not depend on W.
 template <int W>
 bool round_steps_of(const RoundStep& step, const RoundRows& rows, const int* list, int count);

@@ -14,7 +14,7 @@ struct alignas(64) TurnBatch {
   double moments[3][kBatch];   ///< kg m2
 };
 
-/// Of slots 0 to count - 1, for a step of dt, s. The bits do not depend on W.
+/// Turns slots 0 to count - 1 for a step of dt, s. The bits do not depend on W.
 template <int W>
 void drift_turning_of(TurnBatch& b, double dt, int count);
 inline void drift_turning(TurnBatch& b, double dt, int count) {

@@ -22,7 +22,7 @@ class VerletIntegrator<2> {
 
   explicit VerletIntegrator(double dt) : dt_(dt) {}
 
-  /// Of a grain that has not moved yet: its acceleration where it stands.
+  /// Sets a grain's acceleration where it is, before it has moved.
   void start(const Body<2>& b, Memory& m, const Inertia<2>&, const Load<2>& load) const {
     m.acceleration = acceleration_of(b, load);
     m.spin_rate = spin_rate_of(b, load);

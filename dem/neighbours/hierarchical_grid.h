@@ -39,7 +39,7 @@ class HierarchicalGrid {
   /// The same in parts, by several threads. Each pair is found by one of its two grains: those of
   /// grains [first, last), into `found`.
   void find_pairs(int first, int last, IndexPairs& found) const;
-  /// Of all that was found the pairs whose first grain is in [first, last), sorted, into `sorted`.
+  /// Sorts the found pairs whose first grain is in [first, last) into `sorted`.
   static void sort_pairs(std::span<const std::span<const std::pair<int, int>>> found, int first,
                          int last, IndexPairs& sorted);
 

@@ -80,7 +80,7 @@ class ContactNetwork {
     double ratio = 0;         ///< inf without contacts
     double moment_ratio = 0;  ///< likewise
   };
-  /// Of the committed state, from the same forces as the residual.
+  /// Balance of the committed state, from the same forces as the residual.
   Balance balance();
   /// Mean size of the resultants in a residual, and of the moments over the radii.
   double mean_resultant(const Vector& r) const;

@@ -26,7 +26,7 @@ std::unique_ptr<LinearSolver> make_direct_solver();
 /// each, which friction makes unsymmetric here and there.
 std::unique_ptr<LinearSolver> make_iterative_solver();
 
-/// Of the right side, of a solution by iteration that is not taken for want of a better one.
+/// Share of the right side that a solution by iteration may leave.
 inline constexpr double kLinearTolerance = 1e-4;
 
 }  // namespace grainfield::dem

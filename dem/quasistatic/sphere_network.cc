@@ -30,7 +30,7 @@ struct Image {
   std::array<int, 3> image{0, 0, 0};
 };
 
-/// Of the spheres that may touch another across a face that repeats.
+/// Images of the spheres that may touch another across a face that repeats.
 std::vector<Image> images_near_faces(const Cell<3>& cell, const std::vector<Reach<3>>& spheres) {
   std::vector<Image> out;
   if (!cell.is_periodic()) return out;
@@ -109,7 +109,7 @@ SphereNetwork::SphereNetwork(const Snapshot& start, const Materials& materials)
   stiffness_ = mean_stiffness();
 }
 
-/// Of the contacts that touch; of lightly touching ones where none does.
+/// Mean stiffness of the contacts that touch; of lightly touching ones where none does.
 double SphereNetwork::mean_stiffness() const {
   double sum = 0;
   int contacts = 0;

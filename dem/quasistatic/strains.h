@@ -20,7 +20,7 @@ namespace grainfield::dem {
 
 class Strains {
  public:
-  /// Of `start`, which must be at rest to the ratio that the settings ask for. `materials` must
+  /// Strains `start`, which must be at rest to the ratio of the settings. `materials` must
   /// outlive this. Throws as strain().
   Strains(const Snapshot& start, const Materials& materials, const QuasistaticSettings& settings);
 

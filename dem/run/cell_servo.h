@@ -21,7 +21,7 @@ struct CellServo {
   double most = 0;               ///< 1/s
   std::array<double, 3> bias{};  ///< b, 1/s
 
-  /// Of the edge along `axis`, 1/s. `target`: above 0, Pa (N/m), compression positive.
+  /// Rate of the edge along `axis`, 1/s. `target`: above 0, Pa (N/m), compression positive.
   double rate(int axis, double pressure, double target);
   void forget() { bias = {}; }
   void visit(Archive& archive) { archive(bias); }

@@ -46,7 +46,7 @@ class Phases {
     return chunk;
   }
 
-  /// Of the whole realization, when `share` of this phase is done.
+  /// Share of the whole realization, when `share` of this phase is done.
   double fraction(double share) const {
     const PhaseInfo& p = info();
     return p.begin + (p.end - p.begin) * std::clamp(share, 0.0, 1.0);

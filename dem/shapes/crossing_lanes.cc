@@ -64,7 +64,7 @@ GRAINFIELD_INLINE bool are_inside(const Corners& shape, int size, double x1, dou
   return has_first(in, shape.n);
 }
 
-/// Of pairs that may cross where they did, by position: corners ea, ea + 1, la, la + 1 of A and
+/// Pairs that may cross where they did, by position: corners ea, ea + 1, la, la + 1 of A and
 /// eb, eb + 1, lb, lb + 1 of B (Crossings in polygon_overlap.cc), and how many of them are inside
 /// the other: of A behind ea up to la, of B behind eb up to lb, each not more than two.
 struct alignas(64) Crossing {

@@ -25,7 +25,7 @@ struct Powers {
   OfNorm level, whole;
 };
 
-/// Of lesser over greater component `ratio`.
+/// Powers of the lesser over the greater component, `ratio`.
 Powers::OfNorm powers_at(double ratio, double power);
 
 /// (1 + x)^power by its binomial series, |x| max(power, 1) <= kNear; of a number or of several.

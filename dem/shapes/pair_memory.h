@@ -14,7 +14,7 @@ inline constexpr int kMostCorners = 64;
 inline constexpr std::uint32_t kMostHint = 2 * kMostCorners;
 inline constexpr std::uint32_t kCrossed = 1u << 30;
 
-/// Of (r_i + r_j)^2: a larger region is more than round-off (some 100 times its bound).
+/// Share of (r_i + r_j)^2: a larger region is more than round-off (some 100 times its bound).
 inline constexpr double kSureArea = 1e-13;
 
 /// A chord hands over to least penetration, so that a grain is swallowed without a leap, while the

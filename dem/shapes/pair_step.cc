@@ -82,7 +82,7 @@ GRAINFIELD_INLINE LaneNorm<W> norm_of(const Lanes<W>& a, const Lanes<W>& b, cons
   return out;
 }
 
-/// Of a symmetric tensor in the plane, as PlaneTensor.
+/// Lanes of a symmetric tensor in the plane, as PlaneTensor.
 template <int W>
 struct LaneTensor {
   Lanes<W> xx, xy, yy, determinant;

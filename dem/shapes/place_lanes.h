@@ -19,7 +19,7 @@ struct OutlineRows {
   int position_size = 0, angle_size = 0;
 };
 
-/// Of the bodies list[0] to list[count - 1]. The bits do not depend on W.
+/// Places bodies list[0] to list[count - 1]. The bits do not depend on W.
 template <int W>
 void place_outlines_of(const OutlineRows& rows, const int* list, int count);
 inline void place_outlines(const OutlineRows& rows, const int* list, int count) {

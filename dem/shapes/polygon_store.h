@@ -83,7 +83,7 @@ class PolygonStore {
     place_outlines(rows, list, count);
   }
 
-  /// Of the bodies' corners, for overlaps side by side.
+  /// Rows of the bodies' corners, for overlaps side by side.
   CrossingRows crossing_rows() const {
     CrossingRows rows;
     rows.blocks = corners_.data();

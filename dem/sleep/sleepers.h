@@ -192,7 +192,7 @@ class Sleepers {
     stirred_[i] = settled ? 0 : 1;
     touches_[i] = Sum{};
   }
-  /// Of weight, frozen contacts and the mean touch of `steps` steps.
+  /// Residual of weight, frozen contacts and the mean touch of `steps` steps.
   Residual residual(int i, long steps) const {
     const double share = steps > 0 ? 1.0 / static_cast<double>(steps) : 0.0;
     const Sum &rest = rests_[i], &touch = touches_[i];

@@ -19,7 +19,7 @@ class Displacements {
   /// std::invalid_argument where a grain is more than kMostImages (images.h) edges away.
   Displacements(const Snapshot& before, const Snapshot& after);
 
-  /// Of the copy that was in the cell before, m.
+  /// Displacement of the copy that was in the cell before, m.
   Vec3 of(std::size_t grain) const;
   /// `image`, counted in the edges of the cell before, in those after.
   std::array<int, 3> image_after(const std::array<int, 3>& image) const;

@@ -6,7 +6,7 @@ namespace grainfield::dem {
 /// No number of a packing is larger in size, in SI units: squares of forces and velocities, and
 /// sums of many, stay finite.
 inline constexpr double kMostNumber = 1e100;
-/// Of a quaternion's or normal's length from 1, and of a normal force from force and normal,
+/// Tolerance of a quaternion's or normal's length, and of a normal force from force and normal,
 /// relative: what is written with six digits.
 inline constexpr double kUnitTolerance = 1e-5;
 /// A contact point lies this many radii of the larger grain from both centres at most: contacts of

@@ -37,7 +37,7 @@ struct Grain {
   /// would be at position + cell.edges * image, with the velocity of that image.
   std::array<int, 3> image{0, 0, 0};
   bool rotates = true;  ///< false: it slides but never spins
-  /// Of a superellipsoid: semi-axes, m, and exponents e1, e2 (dem/shapes/superellipsoid.h). All 0:
+  /// Superellipsoid: semi-axes, m, and exponents e1, e2 (dem/shapes/superellipsoid.h). All 0:
   /// it is none.
   Vec3 axes{0, 0, 0};
   std::array<double, 2> exponents{0, 0};

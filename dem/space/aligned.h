@@ -6,7 +6,7 @@
 
 namespace grainfield::dem {
 
-/// Of vectors that begin with a cache line: what is read eight at a time lies in one.
+/// Allocates vectors that begin with a cache line: what is read eight at a time lies in one.
 template <class T>
 struct LineAllocator {
   using value_type = T;

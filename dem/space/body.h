@@ -39,7 +39,7 @@ struct alignas(D == 2 ? 32 : 64) ForceSum {
   SpinOf<D> torque = zero<SpinOf<D>>();
   double force_sum = 0;  ///< sum of the forces' lengths; where sleeping is judged
 
-  /// Of the second grain of a contact, without turning the force round: what a sleeper feels.
+  /// Adds to a contact's second grain without turning the force round: what a sleeper feels.
   void add_second(const ContactForce<D>& f) {
     force += f.force;
     torque += f.torque_j;

@@ -43,7 +43,7 @@ inline ContactMotion<2> motion_at(const Body<2>& a, const Body<2>& b, const Over
   return m;
 }
 
-/// Of a repulsion `normal` and a force `tangential` on the first body along t, N.
+/// Forces by a repulsion `normal` and a force `tangential` on the first body along t, N.
 template <bool central>
 inline ContactForce<2> forces_at(const Overlap& o, double normal, double tangential) {
   ContactForce<2> f;

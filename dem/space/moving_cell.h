@@ -58,7 +58,7 @@ class MovingCell {
   using Counts = std::array<int, D>;  ///< whole edges, by axis
 
   MovingCell() = default;
-  /// Of a cell that check_cell has passed; `time_step`, s.
+  /// Moves a cell that check_cell has passed; `time_step`, s.
   MovingCell(const Cell<3>& cell, double time_step);
 
   bool is_periodic() const { return periodic_; }
@@ -86,7 +86,7 @@ class MovingCell {
   /// visit(n) for all images n != 0 of a place that lie within `reach` of the cell's faces.
   template <class Visit>
   void visit_images(const Vector& place, double reach, Visit visit) const;
-  /// Of two opposite images one counts as forward.
+  /// Whether the image counts as forward, one of two opposite ones.
   static bool is_forward(const PairImage& n) {
     for (int a = 0; a < D; ++a) {
       if (n[a] != 0) return n[a] > 0;

@@ -3,7 +3,7 @@
 
 namespace grainfield::dem {
 
-/// Of so many contacts at once, a multiple of every lane width. Measured: 16 to 64 are alike.
+/// Contacts of a batch, a multiple of every lane width. Measured: 16 to 64 are alike.
 inline constexpr int kBatch = 32;
 
 /// As Overlap3, by slot.
@@ -30,7 +30,7 @@ enum class PairFate : unsigned char {
   left  ///< nothing: to be done alone
 };
 
-/// Of the pairs that touch as Overlap, one after the other.
+/// Pairs that touch, as Overlap, one after the other.
 struct alignas(64) PlaneOverlapBatch {
   double nx[kBatch], ny[kBatch], area[kBatch], chord[kBatch], length[kBatch];
   double arm_i[kBatch], arm_j[kBatch], lever_i[kBatch], lever_j[kBatch];

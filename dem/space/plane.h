@@ -9,7 +9,7 @@ struct Plane {
   VectorOf<D> point = zero<VectorOf<D>>();   ///< on it, m
   VectorOf<D> normal = zero<VectorOf<D>>();  ///< unit, out of what lies behind
 
-  /// Of a point in front of the plane, m; behind it below 0.
+  /// Height of a point in front of the plane, m; behind it below 0.
   double height(const VectorOf<D>& at) const { return (at - point).dot(normal); }
 };
 

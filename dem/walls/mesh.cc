@@ -163,7 +163,7 @@ class MeshSurface final : public WallSurface<3> {
     m.normal = way / m.distance;
     return true;
   }
-  /// Of the edge that triangle t has with `other`.
+  /// Inward direction at the edge that triangle t has with `other`.
   const Vec3& inward_of(int t, int other) const {
     const auto& beyond = mesh_.beyond[t];
     const auto at = std::find(beyond.begin(), beyond.end(), other);

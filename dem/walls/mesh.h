@@ -38,7 +38,7 @@ struct MeshTopology {
 /// turned against each other, a coordinate that is no number, no facet at all.
 MeshTopology topology_of(const Triangles& triangles, const std::string& what);
 
-/// Of corners relative to the frame's origin. Throws as topology_of.
+/// Surface by corners relative to the frame's origin. Throws as topology_of.
 std::unique_ptr<WallSurface<3>> mesh_surface(const Triangles& triangles, const std::string& what);
 
 }  // namespace grainfield::dem

@@ -296,7 +296,7 @@ double Walls<D>::work() const {
   return sum;
 }
 
-/// Of its surface, as it is given to turn; 0 without a spin.
+/// Arm of its surface, as it is given to turn; 0 without a spin.
 template <int D>
 double Walls<D>::sweeping_arm(int wall) const {
   const State& s = states_[wall];

@@ -50,7 +50,7 @@ struct ConeEnsemble {
   std::vector<MethodAverages> methods;
   Ensemble base, base_rings;  ///< on the square; by radius: pressure and radial shear
   std::vector<BaseWindows> windows;
-  /// Of the runs and of the analysis by summary key, one value per realization.
+  /// Figures of runs and analysis by summary key, one value per realization.
   std::map<std::string, std::vector<double>> figures;
   std::shared_ptr<const Kernel> kernel;  ///< of the first method
 

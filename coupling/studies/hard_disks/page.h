@@ -10,7 +10,7 @@
 
 namespace grainfield::coupling {
 
-/// Of a fraction: Henderson's, or Carnahan and Starling's.
+/// Compressibility at a fraction: Henderson's, or Carnahan and Starling's.
 double gas_theory(const dem::HardParticlesSetup& setup, double fraction);
 /// And the virial series.
 double gas_series(const dem::HardParticlesSetup& setup, double fraction);
@@ -44,7 +44,7 @@ std::string gas_csv(const GasResults& results);
 std::string gas_sentence(const GasResults& results);
 std::string gas_subtitle(const dem::HardParticlesSetup& setup);
 
-/// Of all fractions (and times) |value over theory - 1| at most; 0 where there is no theory.
+/// Largest |value over theory - 1| of all fractions (and times); 0 where there is no theory.
 double gas_largest_difference(const GasResults& results);
 
 /// All fractions and realizations of a run.

@@ -91,7 +91,7 @@ class HardParticlesRun final : public ArchivedRun {
     engine_ = engine_of(start_gas<D>(gas(), random_));
     energy_ = engine_->kinetic_energy();
   }
-  /// Of grains that lose energy when they are mixed and are to cool.
+  /// Engine of grains, which lose energy when they are mixed and are to cool.
   std::unique_ptr<HardEngine<D>> engine_of(const std::vector<Body<D>>& grains) const {
     HardScene<D> scene;
     scene.box = gas_box<D>(gas());
@@ -149,7 +149,7 @@ class HardParticlesRun final : public ArchivedRun {
     return enskog_rate<D>(f, setup_.radius, setup_.speed, gas_compressibility<D>(f));
   }
   double haff() const { return haff_time<D>(enskog(), setup_.restitution); }
-  /// Of a record, since the start, s: even steps of ln(1 + t/tau).
+  /// Time of a record since the start, s: even steps of ln(1 + t/tau).
   double time_of(std::size_t record) const {
     const double share =
         static_cast<double>(record) / static_cast<double>(std::max(setup_.records - 1, 1));

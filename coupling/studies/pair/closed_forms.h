@@ -21,7 +21,7 @@
 
 namespace grainfield::coupling {
 
-/// Of one impact; nan where there is none for these bodies and this law.
+/// Closed form of one impact; nan where there is none for these bodies and this law.
 struct PairClosedForm {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   double restitution_normal = kNone;

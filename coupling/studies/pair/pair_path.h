@@ -8,7 +8,7 @@ namespace grainfield::dem {
 
 class PairPath {
  public:
-  /// Of the setup, from where the bodies touch.
+  /// The path of the setup, from where the bodies touch.
   PairPath(const PairSetup& setup, const PairBodies& bodies);
   /// A closed loop drawn of `random`, lengths in units of the mean of both radii (at a wall: of the
   /// radius), near the second body; `crossing`: centre over centre.

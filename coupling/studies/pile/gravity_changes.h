@@ -33,7 +33,7 @@ class GravityChanges {
   void advance(long steps, const std::function<bool(double)>& watch);
   bool done() const { return at() == changed_.size(); }
   std::size_t count() const { return changed_.size(); }
-  /// Of all the changes, in [0, 1].
+  /// Share of all the changes that is done, in [0, 1].
   double fraction() const;
   /// "gravity_5": the change at work.
   std::string phase() const;

@@ -38,7 +38,7 @@ struct PileEnsemble {
   std::vector<MethodAverages> methods;
   Ensemble base;  ///< forces on the floor, smeared along x
   std::vector<BaseWindows> windows;
-  /// Of the runs and of the analysis by summary key, one value per realization.
+  /// Figures of runs and analysis by summary key, one value per realization.
   std::map<std::string, std::vector<double>> figures;
 
  private:

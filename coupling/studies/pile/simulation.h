@@ -80,7 +80,7 @@ std::unique_ptr<Run> make_pile_change_run(const PileSetup& setup, const std::str
 Outlook foresee_pile(const PileSetup& setup, const std::vector<std::uint64_t>& seeds,
                      std::int64_t draws);
 
-/// Of the changes of gravity of a pile that stands already: the time alone.
+/// Foresees the time alone of changes of gravity of a pile that stands already.
 Outlook foresee_changes(const ChangeSetup& change);
 
 }  // namespace grainfield::dem

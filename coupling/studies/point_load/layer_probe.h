@@ -48,7 +48,7 @@ class LayerProber {
   std::optional<ProbeOutcome> probe(int number, const std::function<bool(double)>& go_on);
 
  private:
-  /// Of the contacts of a strained state; the slab is the same material as before.
+  /// Stress of a strained state's contacts; the slab is the same material as before.
   Eigen::Matrix3d stress_of(const Snapshot& state, const Eigen::Matrix3d& gradient) const;
   Eigen::Matrix3d gradient_of(const Snapshot& state, const Eigen::Matrix3d& imposed) const;
 

@@ -25,7 +25,7 @@ std::optional<LoadedLayer> load_by_newton(const Snapshot& unloaded, const Engine
                                           const std::vector<std::int64_t>& beside,
                                           const std::function<bool(double)>& go_on);
 
-/// Of a state that no engine made: its forces are evaluated by a step so short that nothing moves.
+/// Diagnostics of a state that no engine made, by a step so short that nothing moves.
 Diagnostics diagnostics_of(const Snapshot& state, const EngineSettings& settings);
 
 }  // namespace grainfield::dem

@@ -36,7 +36,7 @@ std::string shown(const Spread& s) { return with_error(s.mean, s.standard_error)
 
 struct Stage {
   Spread grains, law, difference;
-  /// Of the mean difference over its standard error.
+  /// The mean difference over its standard error.
   double over_error() const { return difference.mean / difference.standard_error; }
 };
 

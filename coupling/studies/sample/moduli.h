@@ -30,7 +30,7 @@ std::vector<ProbedState> probed_moduli(const std::vector<std::string>& files);
 
 /// By summary key moduli.STATE.*, a number for each realization.
 FigureSamples moduli_figures(const std::vector<ProbedState>& states);
-/// Of all realizations together: the chances and the word of the symmetry.
+/// Adds chances and word of the symmetry of all realizations together.
 void add_symmetry(const std::vector<ProbedState>& states, Summary& summary);
 
 /// What could not be probed and why; a table with a column for each state, where any was.

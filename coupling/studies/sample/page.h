@@ -27,7 +27,7 @@ struct SampleReport {
   std::string stress_unit;
   std::vector<SampleCurve> structure;  ///< coordination, fabric: a frame each
   std::vector<SampleCurve> energies;   ///< in one frame, J
-  /// Of the realization that is drawn; may be null.
+  /// States of the realization that is drawn; may be null.
   const dem::Snapshot *first = nullptr, *last = nullptr;
   std::vector<Section> rves;    ///< pictures of RVEs (rve_page.h); may be empty
   std::vector<Section> moduli;  ///< table of small strains (moduli.h); may be empty

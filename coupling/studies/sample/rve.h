@@ -34,7 +34,7 @@ struct RveValue {
   double count = 0;           ///< grains
 };
 
-/// Of one radius and realization: by state, then by RVE.
+/// Values of one radius and realization: by state, then by RVE.
 using RveStates = std::vector<std::vector<RveValue>>;
 
 struct RveSurface {
@@ -73,7 +73,7 @@ FigureSamples rve_figures(const RveTable& table, const std::string& deformation)
 /// least after the first state. (The least of each realization by itself would tell of contraction
 /// wherever they scatter.)
 struct Contraction {
-  /// Of one realization: trace/3 there and at the end of the loading.
+  /// Values of one realization: trace/3 there and at the end of the loading.
   struct Volume {
     double there = 0, at_end = 0;
   };

@@ -34,7 +34,7 @@ struct StateFacts {
   double dissipated() const { return in_dashpots + to_friction + to_rolling + to_damping; }
 };
 
-/// Of a snapshot of coupling/studies/sample/simulation/sample.h; `first`: "state_000" of the same
+/// Facts of a state of coupling/studies/sample/simulation/sample.h; `first`: "state_000" of its
 /// realization. Keeps a pointer to `snapshot`. Throws std::invalid_argument naming an attribute
 /// that is missing.
 StateFacts state_facts(const dem::Snapshot& snapshot, const dem::Snapshot& first);

@@ -37,7 +37,7 @@ struct Strength {
 /// where rates hold, Rowe), and over the last quarter.
 Strength strength_of(const StrengthPath& path);
 
-/// Of all realizations; empty for deformations that do not tell strength.
+/// Paths of all realizations; empty for deformations that show no strength.
 std::vector<StrengthPath> strength_paths(const StateTable& table, const dem::SamplePlan& plan);
 
 /// By summary key strength.*, a number for each realization; keys that are not known for all of

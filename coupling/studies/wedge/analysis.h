@@ -98,7 +98,7 @@ struct WedgeFacts {
 /// "wedge.LABEL." comes before their keys.
 const std::vector<RunFigure<WedgeFacts>>& wedge_member_rows();
 
-/// Of all heaps of a case.
+/// Counts over all heaps of a case.
 struct WedgeCounts {
   std::int64_t heaps = 0, equilibria = 0;
   std::map<std::string, std::int64_t> words = {};  ///< by the shape of the base's pressure

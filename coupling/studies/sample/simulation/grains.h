@@ -22,11 +22,11 @@ struct SampleRadii {
   double least = 0, mean = 0, most = 0;
 };
 SampleRadii sample_radii(const SamplePlan& plan);
-/// Of all grains together, m3 (m2), as expected: of the circles (spheres) that carry them; of
+/// Expected volume of all grains, m3 (m2): of the circles (spheres) that carry them; of
 /// superellipsoids of themselves.
 double mean_volume(const SamplePlan& plan);
 
-/// Of the spheres that fill the gap below the lid of a dropped sample, m: those of the grains, of
+/// Radii of the spheres that fill the gap below a dropped sample's lid, m: those of the grains, of
 /// superellipsoids their semi-axes.
 SampleRadii gap_radii(const SamplePlan& plan);
 /// One of them.
@@ -41,7 +41,7 @@ std::vector<ShapedGrain> draw_sample(const SamplePlan& plan, Random& random);  /
 double most_start_fraction(const SamplePlan& plan);
 
 /// What bounds the time step. Round grains: of the smallest that can be drawn; others: of these.
-/// Of superellipsoids the one that a push moves most easily.
+/// Extremes of the grains; of superellipsoids the one that a push moves most easily.
 GrainExtremes sample_extremes(const SamplePlan& plan, double density,
                               const std::vector<ShapedGrain>& grains);
 

@@ -24,7 +24,7 @@ struct SampleState {
   double lid_shear = 0;
 };
 
-/// Of a sample's snapshot: periodic along every axis, or between the walls of box_walls
+/// State of a sample's snapshot: periodic along every axis, or between the walls of box_walls
 /// (walls/box.h), left and right perhaps tilted about the axis that is neither x nor the last one.
 /// Throws std::invalid_argument when it is neither.
 SampleState sample_state(const Snapshot& snapshot);

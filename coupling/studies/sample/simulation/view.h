@@ -10,7 +10,7 @@ Vec3 sample_edges(const SamplePlan& plan, const Engine& engine);
 /// Along each axis, what servos hold: the pressure in a cell, that on the walls that move. Pa
 /// (N/m), compression positive.
 Vec3 held_pressure(const SamplePlan& plan, const Engine& engine);
-/// Of grains of this volume (area), m3 (m2).
+/// Solid fraction of grains of this volume (area), m3 (m2).
 double solid_fraction(const SamplePlan& plan, const Engine& engine, double solid_volume);
 
 }  // namespace grainfield::dem
