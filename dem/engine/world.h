@@ -1,6 +1,6 @@
 // The state of a simulation: what moves, what it touches, what acts on it. The parts that work on
 // it are in sweep.h (one step), search.h (near pairs), review.h (sleeping), report.h (what it
-// tells) and world_image.h (its bits).
+// tells) and world_checkpoint.h (its bits).
 #pragma once
 #include <algorithm>
 #include <string>

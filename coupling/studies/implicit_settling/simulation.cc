@@ -28,7 +28,7 @@ double ImplicitSettlingSetup::time_unit() const { return std::sqrt(2 * lattice.r
 
 namespace {
 
-// Of a disk with its contacts and their part of the factors: about.
+// Bytes of a disk with its contacts and their part of the factors, about.
 constexpr double kBytesOfSoftDisk = 8000;
 // A contact whose normal rises less than this is one of a row.
 constexpr double kRise = 0.5;

@@ -50,7 +50,7 @@ double most_area(const PileSetup& s) {
   return n * disk_grain(s.shape.radius).area * second * (1 + kAreaErrors * error);
 }
 
-// Of all grains of a pile of which these were drawn, at most, m2.
+// The area of all grains of a pile of which these were drawn, at most, m2.
 double area_ahead(const PileSetup& s, const std::vector<ShapedGrain>& drawn) {
   const double n = s.source.grains, count = static_cast<double>(drawn.size());
   const double area = total_area(drawn), mean = area / count;
