@@ -130,7 +130,7 @@ ModelInfo elastic_layer() {
           "elastic layer on a rigid base under a point load, finite elements",
           0,
           joined({common_parameters(), layer_parameters(),
-                  numerical_parameters("over F/h (3D: F/h2); 0: 2e-4 in 2D, 5e-3 in 3D", 6)}),
+                  numerical_parameters("over F/h (3D: F/h2); 0: 2e-4 in 2D, 5e-3 in 3D", 8)}),
           in_fe_library("fe_elastic_layer"),
           solver_figures({}),
           moduli_replace,
