@@ -105,8 +105,6 @@ TEST(DroppedPile, ResumesToTheSameBitsOnAnyNumberOfThreads) {
 }
 
 TEST(DroppedPile, RefusesAFunnelThatWouldRise) {
-  PileSetup s = dropped(12);
-  s.source.above = -1;
   const auto refusal = [](const PileSetup& setup) -> std::string {
     try {
       make_pile_run(setup, 1, 1);
@@ -115,7 +113,7 @@ TEST(DroppedPile, RefusesAFunnelThatWouldRise) {
     }
     return "accepted";
   };
-  EXPECT_THAT(refusal(s), HasSubstr("source.above: found -1, allowed: 0 (from source.height) or"));
+  PileSetup s = dropped(12);
   s.source.above = 2;
   s.material.rolling_friction = 0;
   s.source.opening = 0.3;
