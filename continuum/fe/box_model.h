@@ -19,6 +19,8 @@ inline constexpr double kOnBorder = 1e-9;
 /// What layers and half spaces share: the box |x| <= half width (its mirrored half x >= 0, in 3D
 /// also y >= 0), bottom <= vertical <= 0, refinement until the stresses
 /// at probe points stand still, and the way from points of the full space into the meshed part.
+/// The settings have F, degree, tolerance, refinements, most_unknowns and iterations. A mesh of its
+/// own needs probes() and scale() to fit it.
 template <int dim>
 class BoxModel : public SolvedModel<dim> {
  public:

@@ -124,11 +124,11 @@ ReportRows figure_rows(const StudyResult& result, bool families) {
     const bool elsewhere = std::any_of(std::begin(kElsewhere), std::end(kElsewhere),
                                        [&](const char* part) { return pattern.starts_with(part); });
     if (elsewhere || (family && !families && !pattern.starts_with("average."))) continue;
+    const bool bare = declared.unit == "-" || declared.unit == "text";
     for (const auto& [key, unused] : result.summary) {
       if (family ? find_summary_key(key) != &declared : key != pattern) continue;
       rows.emplace_back(fmt::format("{} ({})", declared.meaning, key),
-                        shown_with_error(result.summary, key) +
-                            (declared.unit == "-" ? "" : " " + declared.unit));
+                        shown_with_error(result.summary, key) + (bare ? "" : " " + declared.unit));
     }
   }
   return rows;
