@@ -72,7 +72,7 @@ template <int D>
 Impact<D> impact_of(const ContactMotion<D>& m, double arm_i, double arm_j, const ImpactLaw& law) {
   Impact<D> out;
   if (!(m.approach > 0)) return out;
-  const double inverse = m.inverse_mass_i + m.inverse_mass_j;
+  const double inverse = m.inverse_mass;
   out.normal = (1 + law.restitution) * m.approach / inverse;
   out.lost = 0.5 * (1 - law.restitution * law.restitution) * m.approach * m.approach / inverse;
   if (law.friction == 0) return out;

@@ -89,7 +89,7 @@ class Interaction {
                                  double dt, Memory& memory) {
     const ContactMotion<dim> motion = motion_at<central>(a, b, o);
     if constexpr (dim == 3 && central) {
-      turn_with_contact(memory.spring, o.normal, 0.5 * dt * (a.spin + b.spin).dot(o.normal), o);
+      turn_with_contact(memory.spring, o.normal, twist_of(a, b, o, dt), o);
     } else if constexpr (dim == 3) {
       turn_with_material(memory.spring, o.normal, 0.5 * dt * (a.spin + b.spin));
     }

@@ -13,15 +13,12 @@
 
 namespace grainfield::dem {
 
-/// Spheres, and a law that tells its numbers for them side by side (laws/sphere_lanes.h).
+/// Spheres, and a law that the kernel has (laws/sphere_lanes.cc).
 template <class Shape, class Law>
-concept SphereRowsInLanes = Shape::dim == 3 && Shape::rows_in_lanes&& requires(const Law& law) {
-  law.round_numbers(0.0, 0.0);
-};
-/// Disks likewise, with the linear law (laws/disk_lanes.h).
+concept SphereRowsInLanes = Shape::dim == 3 && Shape::rows_in_lanes&& Law::in_lanes;
+/// Disks likewise (laws/disk_lanes.cc).
 template <class Shape, class Law>
-concept DiskRowsInLanes =
-    Shape::dim == 2 && Shape::rows_in_lanes&& Law::sphere_kind == SphereLawKind::linear;
+concept DiskRowsInLanes = Shape::dim == 2 && Shape::rows_in_lanes&& Law::in_lanes;
 /// Polygons likewise (shapes/crossing_lanes.h, laws/area_lanes.h).
 template <class Shape, class Law>
 concept OutlineRowsInLanes = Law::measures ==
@@ -52,22 +49,20 @@ class RowForces<World> {
   using Sum = ForceSum<World::dim>;
 
   RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt, RowForcesGo go)
-      : rows_(sphere_rows_of(world, sums, world.rolling.on, go == RowForcesGo::to_list)) {
-    const auto& rule = world.acting.rule(0, 0);
-    const auto& r = rule.rolling;
-    numbers_ = rule.law.round_numbers(rule.friction, dt);
-    rolling_ = {r.stiffness,          r.damping,          r.friction,
-                r.twisting_stiffness, r.twisting_damping, r.twisting_friction};
-  }
+      : rule_(world.acting.rule(0, 0)),
+        dt_(dt),
+        rows_(sphere_rows_of(world, sums, world.rolling.on, go == RowForcesGo::to_list)) {}
 
   void evaluate(const PairsInOrder& order, int from, int to) {
-    if (from < to) sphere_forces(numbers_, rolling_, rows_, batch_of(order, from, to));
+    if (from == to) return;
+    const RowBatch batch = batch_of(order, from, to);
+    sphere_forces(rule_.law, rule_.friction, dt_, rule_.rolling, rows_, batch);
   }
 
  private:
-  RoundNumbers numbers_;
-  RollingNumbers rolling_;
-  SphereRows rows_;
+  const typename World::Acting::Rule& rule_;
+  const double dt_;
+  const SphereRows rows_;
 };
 
 template <class World>
@@ -77,16 +72,19 @@ class RowForces<World> {
   using Sum = ForceSum<World::dim>;
 
   RowForces(World& world, ContactForces<World>&, std::vector<Sum>& sums, double dt, RowForcesGo go)
-      : numbers_(world.acting.rule(0, 0).law.round_numbers(world.acting.rule(0, 0).friction, dt)),
+      : rule_(world.acting.rule(0, 0)),
+        dt_(dt),
         rows_(disk_rows_of(world, sums, go == RowForcesGo::to_list)) {}
 
   void evaluate(const PairsInOrder& order, int from, int to) {
-    if (from < to) disk_forces(numbers_, rows_, batch_of(order, from, to));
+    if (from == to) return;
+    disk_forces(rule_.law, rule_.friction, dt_, rows_, batch_of(order, from, to));
   }
 
  private:
-  RoundNumbers numbers_;
-  DiskRows rows_;
+  const typename World::Acting::Rule& rule_;
+  const double dt_;
+  const DiskRows rows_;
 };
 
 template <class World>

@@ -18,12 +18,11 @@ template <class World, class Sum>
 SphereRows sphere_rows_of(World& world, std::vector<Sum>& sums, bool rolls, bool to_list) {
   using Body = typename World::Body;
   using Pair = typename World::Pair;
-  constexpr SphereLawKind kind = World::Law::sphere_kind;
   static_assert(sizeof(Body) == kSphereBody * sizeof(double));
   static_assert(sizeof(Sum) == kSphereSum * sizeof(double) && kAhead >= kPairsAhead);
   static_assert(sizeof(ContactForce<3>) == kSphereForce * sizeof(double));
   static_assert(sizeof(RollingMemory<World::dim>) == 4 * sizeof(double));
-  static_assert(sizeof(Pair) == pair_size(kind));
+  static_assert(sizeof(Pair) == kSpherePair<typename World::Law>);
   return {world.grains.bodies.data()->position.data(),
           reinterpret_cast<unsigned char*>(&world.contacts.pairs[0]), sums.data()->force.data(),
           rolls ? world.rolling.pairs.data()->roll.data() : nullptr,

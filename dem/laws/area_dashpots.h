@@ -34,7 +34,7 @@ struct AreaDashpots {
   /// `repulsion`: R, N.
   LawForce<2> forces(double repulsion, const Overlap& o, const ContactMotion<2>& m, double mu,
                      double dt, SpringMemory<2>& memory) const {
-    const double inverse_sum = m.inverse_mass_i + m.inverse_mass_j;
+    const double inverse_sum = m.inverse_mass;
     const double viscous =
         damping * o.chord * m.approach / o.length * std::sqrt(young / inverse_sum);
     const double normal = std::max(repulsion + viscous, 0.0);

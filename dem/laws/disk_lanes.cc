@@ -3,7 +3,11 @@
 
 #include <cstddef>
 
+#include "dem/laws/linear.h"
+#include "dem/laws/penalty.h"
+#include "dem/space/kinematics.h"
 #include "dem/space/lane_rows.h"
+#include "dem/space/round_overlap.h"
 
 namespace grainfield::dem {
 namespace {
@@ -15,17 +19,17 @@ struct alignas(64) PairLanes {
   unsigned char* pair[kBatch];
 };
 
-/// capped of a number (contact.h).
 template <int W>
-[[gnu::always_inline]] inline Lanes<W> within(const Lanes<W>& value, const Lanes<W>& limit) {
-  const Lanes<W> above = value < -limit ? -limit : value;
-  return limit < above ? limit : above;
+[[gnu::always_inline]] inline Body<2, Lanes<W>> disks_of(const Four<W>& first,
+                                                         const Four<W>& second) {
+  return {{first.a, first.b}, {first.c, first.d}, second.a, second.b, second.c, second.d};
 }
 
 /// Lanes beyond the batch do later pairs' work, for nobody.
-template <int W>
-[[gnu::always_inline]] inline void add_forces(const RoundNumbers& law, const DiskRows& rows,
-                                              const RowBatch& batch, int at, PairLanes& to) {
+template <int W, class Law>
+[[gnu::always_inline]] inline void add_forces(const Law& law, double friction, double dt,
+                                              const DiskRows& rows, const RowBatch& batch, int at,
+                                              PairLanes& to) {
   using V = Lanes<W>;
   const V none{};
   const double *body_i[W], *body_j[W];
@@ -47,48 +51,22 @@ template <int W>
     __builtin_prefetch(rows.bodies + std::ptrdiff_t{later} * kDiskBody);
     __builtin_prefetch(rows.sums + std::ptrdiff_t{later} * kDiskSum, 1);
   }
-  // Position and velocity; spin, radius, inverse mass and inertia.
-  const Four<W> a = four_of<W>(body_i, 0), b = four_of<W>(body_j, 0);
-  const Four<W> inert_a = four_of<W>(body_i, 4), inert_b = four_of<W>(body_j, 4);
-
-  // overlap_of_disks.
-  const V dx = b.a - a.a, dy = b.b - a.b, ri = inert_a.b, rj = inert_b.b;
-  const V squared = dx * dx + dy * dy, reach = ri + rj;
-  const auto apart = squared >= reach * reach;
-  const V distance = root_of<W>(squared), inverse = 1 / distance, depth = reach - distance;
-  const V sag_i = depth * (2 * rj - depth) * (0.5 * inverse), sag_j = depth - sag_i;
-  V nx = dx * inverse, ny = dy * inverse, arm_i = ri - sag_i, arm_j = rj - sag_j;
-  const auto beside = distance > magnitude(ri - rj) + 1e-12 * reach;
-  const auto swallowed = ~(beside | apart);
-  if (any_of(swallowed)) [[unlikely]] {
-    const V inner = ri < rj ? none : distance;
-    nx = swallowed & (distance == 0) ? none + 1 : nx;
-    ny = swallowed & (distance == 0) ? none : ny;
-    arm_i = swallowed ? inner : arm_i;
-    arm_j = swallowed ? distance - inner : arm_j;
-  }
-
-  // motion_at.
-  const V vx = a.c - b.c, vy = a.d - b.d;
-  const V approach = vx * nx + vy * ny;
-  const V slip = vy * nx - vx * ny + inert_a.a * arm_i + inert_b.a * arm_j;
-
-  // LinearLaw and friction_force.
-  const V mass = 1 / (inert_a.c + inert_b.c);
-  const V pushed = law.normal * depth + mass * law.across * approach;
-  const V normal = pushed < 0 ? none : pushed;
-  const V limit = law.friction * normal, along = -(mass * law.along) * slip;
-  const V trial = spring - law.tangential * slip * law.dt, sum = trial + along;
-  const V tangential = within<W>(sum, limit);
-  const V rest = within<W>(tangential == sum ? trial : tangential - along, limit);
-
-  // forces_at; 0 of those that do not touch.
-  const V fx = -normal * nx - tangential * ny, fy = -normal * ny + tangential * nx;
-  store<W>(apart ? none : fx, to.fx + at);
-  store<W>(apart ? none : fy, to.fy + at);
-  store<W>(apart ? none : arm_i * tangential, to.torque_i + at);
-  store<W>(apart ? none : arm_j * tangential, to.torque_j + at);
-  store<W>(apart ? none : rest, to.spring + at);
+  // What is waited for first is read first.
+  const Four<W> first_a = four_of<W>(body_i, 0), first_b = four_of<W>(body_j, 0);
+  const Four<W> second_a = four_of<W>(body_i, 4), second_b = four_of<W>(body_j, 4);
+  const Body<2, V> a = disks_of<W>(first_a, second_a), b = disks_of<W>(first_b, second_b);
+  Overlap2Of<V> o;
+  const auto apart = disks_meet(V(b.position.x() - a.position.x()),
+                                V(b.position.y() - a.position.y()), a.radius, b.radius, o)
+                         .apart;
+  SpringMemory<2, V> memory{spring};
+  const LawForce<2, V> f = law(o, motion_at<true>(a, b, o), none + friction, dt, memory);
+  const ContactForce<2, V> on = forces_at<true>(o, f.normal, f.tangential);
+  store<W>(apart ? none : on.force.x(), to.fx + at);
+  store<W>(apart ? none : on.force.y(), to.fy + at);
+  store<W>(apart ? none : on.torque_i, to.torque_i + at);
+  store<W>(apart ? none : on.torque_j, to.torque_j + at);
+  store<W>(apart ? none : memory.spring, to.spring + at);
 }
 
 /// To the memories, and to the sums or what is kept of pairs.
@@ -118,14 +96,19 @@ template <int W>
 
 }  // namespace
 
-template <int W>
-void disk_forces_of(const RoundNumbers& law, const DiskRows& rows, const RowBatch& batch) {
+template <int W, class Law>
+void disk_forces_of(const Law& law, double friction, double dt, const DiskRows& rows,
+                    const RowBatch& batch) {
   static_assert(kPairsBehind >= kPairsAhead + W);
   PairLanes lanes;
-  for (int at = 0; at < batch.count; at += W) add_forces<W>(law, rows, batch, at, lanes);
+  for (int at = 0; at < batch.count; at += W) {
+    add_forces<W>(law, friction, dt, rows, batch, at, lanes);
+  }
   for (int at = 0; at < batch.count; at += W) scatter<W>(batch, at, rows.kept != nullptr, lanes);
 }
-template void disk_forces_of<GRAINFIELD_LANES>(const RoundNumbers& law, const DiskRows& rows,
-                                               const RowBatch& batch);
+template void disk_forces_of<GRAINFIELD_LANES>(const LinearLaw&, double, double, const DiskRows&,
+                                               const RowBatch&);
+template void disk_forces_of<GRAINFIELD_LANES>(const PenaltyLaw&, double, double, const DiskRows&,
+                                               const RowBatch&);
 
 }  // namespace grainfield::dem

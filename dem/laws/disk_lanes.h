@@ -1,6 +1,5 @@
-// Pairs of disks side by side, from the bodies to their sums of forces, with the linear law:
-// overlap, motion, law and friction, operation by operation what is done for one (shapes/disk.h,
-// kinematics.h, linear.h, contact.h).
+// Pairs of disks side by side, from the bodies to their sums of forces: overlap, motion, law and
+// friction by the text that one pair has (round_overlap.h, kinematics.h, the law's own).
 #pragma once
 #include "dem/laws/sphere_lanes.h"
 #include "dem/space/lane_width.h"
@@ -20,12 +19,15 @@ struct DiskRows {
   double* kept = nullptr;  ///< by pair, ContactForce<2> that are 0: these, not the sums
 };
 
-/// Their forces, added to the sums of both grains in the order of the pairs. The bits do not depend
-/// on W.
-template <int W>
-void disk_forces_of(const RoundNumbers& law, const DiskRows& rows, const RowBatch& batch);
-inline void disk_forces(const RoundNumbers& law, const DiskRows& rows, const RowBatch& batch) {
-  with_lanes([&](auto width) { disk_forces_of<width()>(law, rows, batch); });
+/// Their forces in a step of dt > 0, s, added to the sums of both grains in the order of the pairs.
+/// The bits do not depend on W.
+template <int W, class Law>
+void disk_forces_of(const Law& law, double friction, double dt, const DiskRows& rows,
+                    const RowBatch& batch);
+template <class Law>
+void disk_forces(const Law& law, double friction, double dt, const DiskRows& rows,
+                 const RowBatch& batch) {
+  with_lanes([&](auto width) { disk_forces_of<width()>(law, friction, dt, rows, batch); });
 }
 
 }  // namespace grainfield::dem

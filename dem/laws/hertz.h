@@ -18,18 +18,17 @@
 #include "dem/laws/contact.h"
 #include "dem/laws/edge_measure.h"
 #include "dem/laws/material_setup.h"
-#include "dem/laws/sphere_lanes.h"
 #include "dem/words/nearest.h"
 
 namespace grainfield::dem {
 
 /// Spring, and the contact's radius when it was last advanced.
-template <int D>
+template <int D, class N = double>
 struct HertzMemory {
-  TangentialOf<D> spring = zero<TangentialOf<D>>();  ///< its force on i, N
-  double contact_radius = 0;                         ///< m
+  TangentialOf<D, N> spring = zero<TangentialOf<D, N>>();  ///< its force on i, N
+  N contact_radius = zero<N>();                            ///< m
 
-  bool empty() const { return contact_radius == 0 && spring == zero<TangentialOf<D>>(); }
+  bool empty() const { return contact_radius == 0 && spring == zero<TangentialOf<D, N>>(); }
   HertzMemory reversed() const { return {-spring, contact_radius}; }
 };
 
@@ -37,8 +36,8 @@ struct HertzLaw {
   static constexpr const char* name = "hertz";
   static constexpr Measures measures = Measures::curvature;
   static constexpr EdgeMeasure edges = EdgeMeasure::none;
-  template <int D>
-  using Memory = HertzMemory<D>;
+  template <int D, class N = double>
+  using Memory = HertzMemory<D, N>;
 
   double young = 1e7;    ///< E, Pa
   double poisson = 0.3;  ///< nu, -
@@ -90,39 +89,27 @@ struct HertzLaw {
   double edge_stiffness(double /*steepness*/) const { return 0; }
   double edge_rate(double /*mass*/, double /*steepness*/) const { return 0; }
 
-  template <int D>
-  requires(D == 3) LawForce<D>
-  operator()(const OverlapIn<D>& o, const ContactMotion<D>& m, double mu, double dt,
-             HertzMemory<D>& memory) const {
-    const double mass = 1 / (m.inverse_mass_i + m.inverse_mass_j);
-    const double a = std::sqrt(o.radius * o.depth);
-    const double kn = 2 * effective_young() * a, kt = 8 * effective_shear() * a;
-    const double across =
-        viscoelastic ? normal_damping * a * mass : 2 * damping * std::sqrt(kn * mass);
-    const double along =
-        viscoelastic ? tangential_damping * a * mass : 2 * damping * std::sqrt(kt * mass);
-    const double normal = std::max(kn * (2.0 / 3) * o.depth + across * m.approach, 0.0);
+  static constexpr bool in_lanes = true;
+  template <int D, class N>
+  requires(D == 3) [[gnu::always_inline]] LawForce<D, N> operator()(
+      const OverlapIn<D, N>& o, const ContactMotion<D, N>& m, const std::type_identity_t<N>& mu,
+      double dt, HertzMemory<D, N>& memory) const {
+    using V = VectorOf<D, N>;
+    const N mass = 1 / m.inverse_mass;
+    const N a = root(N(o.radius * o.depth));
+    const N kn = 2 * effective_young() * a, kt = 8 * effective_shear() * a;
+    const N across =
+        viscoelastic ? N(normal_damping * a * mass) : N(2 * damping * root(N(kn * mass)));
+    const N along =
+        viscoelastic ? N(tangential_damping * a * mass) : N(2 * damping * root(N(kt * mass)));
+    const N normal = at_least_zero(N(kn * (2.0 / 3) * o.depth + across * m.approach));
     if (dt > 0) {
-      const double before = memory.contact_radius;
-      if (a < before || (displacement && before > 0)) memory.spring *= a / before;
+      const N before = memory.contact_radius;
+      const auto goes_along = displacement ? (a < before) | (before > 0) : a < before;
+      memory.spring = chosen(goes_along, V((a / before) * memory.spring), memory.spring);
       memory.contact_radius = a;
     }
     return {normal, friction_force(normal, mu, kt, along, m.slip, dt, memory.spring)};
-  }
-
-  /// The same for spheres side by side.
-  static constexpr SphereLawKind sphere_kind = SphereLawKind::hertz;
-  RoundNumbers round_numbers(double mu, double dt) const {
-    const double twice = 2 * damping;
-    return {sphere_kind,
-            2 * effective_young(),
-            8 * effective_shear(),
-            viscoelastic ? normal_damping : twice,
-            viscoelastic ? tangential_damping : twice,
-            displacement,
-            viscoelastic,
-            mu,
-            dt};
   }
 
   /// The memory of a contact as it is, beside its spring.

@@ -89,7 +89,7 @@ struct HertzEllipticLaw {
   requires(D == 3) LawForce<D>
   operator()(const OverlapIn<D>& o, const ContactMotion<D>& m, double mu, double dt,
              HertzMemory<D>& memory) const {
-    const double mass = 1 / (m.inverse_mass_i + m.inverse_mass_j), root = std::sqrt(o.depth);
+    const double mass = 1 / m.inverse_mass, root = std::sqrt(o.depth);
     const EllipticContact ellipse = this->ellipse(o);
     const double stiffness = 1.5 * ellipse.gamma * effective_young() * root;
     const double dashpot = 2 * damping * std::sqrt(stiffness * mass);

@@ -2,11 +2,13 @@
 //
 // A law takes the overlap, the motion at the contact, a coefficient of friction, the time step and
 // what the contact remembers, and gives the forces; it advances the memory by the step (dt = 0: by
-// nothing). A law with forces of several contacts side by side also has lanes and has_lanes
-// (hertz_elliptic.h, engine/batch.h), or, for spheres and disks, round_numbers (sphere_lanes.h,
-// disk_lanes.h), for polygons area_numbers (area_lanes.h). It knows
-// neither grains nor shapes: which measures of the overlap it reads it declares (overlap.h:
-// Measures), and a shape that does not offer them is not combined with it.
+// nothing). It knows neither grains nor shapes: which measures of the overlap it reads it declares
+// (overlap.h: Measures), and a shape that does not offer them is not combined with it.
+//
+// A law of disks and spheres whose text is over any number (space/number.h; linear.h, hertz.h) is
+// one for several contacts side by side, too: in_lanes, and a line in disk_lanes.cc and
+// sphere_lanes.cc. Others have kernels of their own: lanes and has_lanes (hertz_elliptic.h,
+// engine/batch.h), for polygons area_numbers (area_lanes.h).
 #pragma once
 #include <concepts>
 

@@ -6,7 +6,6 @@
 #include "dem/laws/contact.h"
 #include "dem/laws/edge_measure.h"
 #include "dem/laws/material_setup.h"
-#include "dem/laws/sphere_lanes.h"
 
 namespace grainfield::dem {
 
@@ -14,8 +13,8 @@ struct LinearLaw {
   static constexpr const char* name = "linear";
   static constexpr Measures measures = Measures::depth;
   static constexpr EdgeMeasure edges = EdgeMeasure::none;
-  template <int D>
-  using Memory = SpringMemory<D>;
+  template <int D, class N = double>
+  using Memory = SpringMemory<D, N>;
   double normal_stiffness = 1e7;           ///< k_n, N/m
   double tangential_stiffness_ = 2e7 / 7;  ///< k_t, N/m
   double normal_damping = 500;             ///< gamma_n, 1/s
@@ -40,32 +39,21 @@ struct LinearLaw {
   double edge_stiffness(double /*steepness*/) const { return 4 * normal_stiffness; }
   double edge_rate(double, double) const { return 2 * normal_damping; }
 
-  template <int D>
-  LawForce<D> operator()(const OverlapIn<D>& o, const ContactMotion<D>& m, double mu, double dt,
-                         SpringMemory<D>& memory) const {
-    const double mass = 1 / (m.inverse_mass_i + m.inverse_mass_j);
-    const double normal = std::max(repulsion(o) + mass * normal_damping * m.approach, 0.0);
-    const auto force = friction_force(normal, mu, tangential_stiffness_, mass * tangential_damping,
-                                      m.slip, dt, memory.spring);
+  static constexpr bool in_lanes = true;
+  template <int D, class N>
+  [[gnu::always_inline]] LawForce<D, N> operator()(const OverlapIn<D, N>& o,
+                                                   const ContactMotion<D, N>& m,
+                                                   const std::type_identity_t<N>& mu, double dt,
+                                                   SpringMemory<D, N>& memory) const {
+    const N mass = 1 / m.inverse_mass;
+    const N normal = at_least_zero(N(repulsion(o) + mass * normal_damping * m.approach));
+    const auto force = friction_force(normal, mu, tangential_stiffness_,
+                                      N(mass * tangential_damping), m.slip, dt, memory.spring);
     return {normal, force};
   }
 
-  /// The same for spheres side by side.
-  static constexpr SphereLawKind sphere_kind = SphereLawKind::linear;
-  RoundNumbers round_numbers(double mu, double dt) const {
-    return {sphere_kind,
-            normal_stiffness,
-            tangential_stiffness_,
-            normal_damping,
-            tangential_damping,
-            false,
-            false,
-            mu,
-            dt};
-  }
-
   double spring_stiffness(const auto& /*o*/) const { return tangential_stiffness_; }
-  double repulsion(const auto& o) const { return normal_stiffness * o.depth; }
+  [[gnu::always_inline]] auto repulsion(const auto& o) const { return normal_stiffness * o.depth; }
   template <int D>
   ContactEnergy energy(const OverlapIn<D>& o, const SpringMemory<D>& memory) const {
     return {0.5 * normal_stiffness * o.depth * o.depth,

@@ -7,7 +7,6 @@
 #include "dem/laws/contact.h"
 #include "dem/laws/edge_measure.h"
 #include "dem/laws/material_setup.h"
-#include "dem/laws/sphere_lanes.h"
 
 namespace grainfield::dem {
 
@@ -15,8 +14,8 @@ struct PenaltyLaw {
   static constexpr const char* name = "penalty";
   static constexpr Measures measures = Measures::depth;
   static constexpr EdgeMeasure edges = EdgeMeasure::none;
-  template <int D>
-  using Memory = SpringMemory<D>;
+  template <int D, class N = double>
+  using Memory = SpringMemory<D, N>;
   double normal_stiffness = 1e7;       ///< c_N, N/m
   double tangential_stiffness_ = 1e7;  ///< c_T, N/m
   double damping = 1;                  ///< zeta, -; 1 is critical
@@ -39,25 +38,21 @@ struct PenaltyLaw {
     return 4 * damping * std::sqrt(2 * normal_stiffness / mass);
   }
 
-  template <int D>
-  LawForce<D> operator()(const OverlapIn<D>& o, const ContactMotion<D>& m, double mu, double dt,
-                         SpringMemory<D>& memory) const {
-    const double mass = 1 / (m.inverse_mass_i + m.inverse_mass_j);
-    const double dashpot = 2 * damping * std::sqrt(normal_stiffness * mass);
-    const double normal = std::max(repulsion(o) + dashpot * m.approach, 0.0);
+  static constexpr bool in_lanes = true;
+  template <int D, class N>
+  [[gnu::always_inline]] LawForce<D, N> operator()(const OverlapIn<D, N>& o,
+                                                   const ContactMotion<D, N>& m,
+                                                   const std::type_identity_t<N>& mu, double dt,
+                                                   SpringMemory<D, N>& memory) const {
+    const N mass = 1 / m.inverse_mass;
+    const N dashpot = 2 * damping * root(N(normal_stiffness * mass));
+    const N normal = at_least_zero(N(repulsion(o) + dashpot * m.approach));
     return {normal,
             friction_force(normal, mu, tangential_stiffness_, 0.0, m.slip, dt, memory.spring)};
   }
 
-  /// The same for spheres side by side.
-  static constexpr SphereLawKind sphere_kind = SphereLawKind::penalty;
-  RoundNumbers round_numbers(double mu, double dt) const {
-    return {sphere_kind, normal_stiffness, tangential_stiffness_, 2 * damping, 0, false, false, mu,
-            dt};
-  }
-
   double spring_stiffness(const auto& /*o*/) const { return tangential_stiffness_; }
-  double repulsion(const auto& o) const { return normal_stiffness * o.depth; }
+  [[gnu::always_inline]] auto repulsion(const auto& o) const { return normal_stiffness * o.depth; }
   template <int D>
   ContactEnergy energy(const OverlapIn<D>& o, const SpringMemory<D>& memory) const {
     return {0.5 * normal_stiffness * o.depth * o.depth,

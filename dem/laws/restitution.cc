@@ -57,7 +57,7 @@ double restitution_under(const Law& law, const RoundGrain& g, double mass, doubl
     }
   };
   ContactMotion<D> motion;
-  motion.inverse_mass_i = motion.inverse_mass_j = 1 / mass;
+  motion.inverse_mass = 1 / mass + 1 / mass;
   motion.inverse_inertia_i = motion.inverse_inertia_j =
       1 / ((D == 2 ? 0.5 : 0.4) * mass * g.radius * g.radius);
   const auto force = [&](double depth, double approach) {

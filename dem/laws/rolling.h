@@ -18,12 +18,12 @@
 namespace grainfield::dem {
 
 /// What a contact remembers of rolling and twisting.
-template <int D>
+template <int D, class N = double>
 struct RollingMemory {
-  TangentialOf<D> roll = zero<TangentialOf<D>>();  ///< pseudo-force of the spring on i, N
-  double twist = 0;                                ///< moment of the spring on i along n, N m
+  TangentialOf<D, N> roll = zero<TangentialOf<D, N>>();  ///< pseudo-force of the spring on i, N
+  N twist = zero<N>();                                   ///< moment of the spring on i along n, N m
 
-  bool empty() const { return twist == 0 && roll == zero<TangentialOf<D>>(); }
+  bool empty() const { return twist == 0 && roll == zero<TangentialOf<D, N>>(); }
   /// Seen from j: n and w_i - w_j both turn round, so vectors stay; in 2D so does the tangent.
   RollingMemory reversed() const {
     if constexpr (D == 2) return {-roll, twist};
@@ -31,7 +31,24 @@ struct RollingMemory {
   }
 };
 
-/// Rolling law of two materials. Off while both coefficients of friction are 0.
+/// How two bodies roll and twist on each other.
+template <int D, class N = double>
+struct Turning {
+  SpinOf<D, N> between = zero<SpinOf<D, N>>();  ///< w_i - w_j, rad/s
+  N radius = zero<N>();                         ///< R_eff, m
+  N twist = zero<N>();  ///< of both in a step about the normal (twist_of), rad; 3D
+};
+template <int D, class N>
+[[gnu::always_inline]] inline Turning<D, N> turning_of(const Body<D, N>& a, const Body<D, N>& b,
+                                                       const OverlapIn<D, N>& o, double dt) {
+  Turning<D, N> t;
+  t.between = a.spin - b.spin;
+  t.radius = b.radius > 0 ? N(a.radius * b.radius / (a.radius + b.radius)) : a.radius;
+  if constexpr (D == 3) t.twist = twist_of(a, b, o, dt);
+  return t;
+}
+
+/// Of two materials. Off while both coefficients of friction are 0.
 struct RollingLaw {
   double stiffness = 0;           ///< k_r, N/m
   double damping = 0;             ///< g_r, kg/s
@@ -66,21 +83,26 @@ struct RollingLaw {
 
   /// The moment on i, N m; that on j is its opposite. `repulsion`: F_n, N. The memory advances by
   /// dt, s, as the spring of friction does (contact.h).
+  template <int D, class N>
+  [[gnu::always_inline]] SpinOf<D, N> moment(const Turning<D, N>& t, const OverlapIn<D, N>& o,
+                                             const N& repulsion, double dt,
+                                             RollingMemory<D, N>& memory) const {
+    if constexpr (D == 2) {
+      return t.radius * held(repulsion, N(t.radius * t.between), dt, memory.roll);
+    } else {
+      using V = VectorOf<3, N>;
+      turn_with_contact(memory.roll, o.normal, t.twist, o);
+      const V rolling = t.radius * t.between.cross(o.normal);
+      const V force = held(repulsion, rolling, dt, memory.roll);
+      const N twist = capped_spring(repulsion, twisting_friction, twisting_stiffness,
+                                    twisting_damping, N(t.between.dot(o.normal)), dt, memory.twist);
+      return t.radius * o.normal.cross(force) + twist * o.normal;
+    }
+  }
   template <int D>
   SpinOf<D> moment(const Body<D>& a, const Body<D>& b, const OverlapIn<D>& o, double repulsion,
                    double dt, RollingMemory<D>& memory) const {
-    const double radius = b.radius > 0 ? a.radius * b.radius / (a.radius + b.radius) : a.radius;
-    if constexpr (D == 2) {
-      return radius * held(repulsion, radius * (a.spin - b.spin), dt, memory.roll);
-    } else {
-      const Eigen::Vector3d turning = a.spin - b.spin;
-      turn_with_contact(memory.roll, o.normal, 0.5 * dt * (a.spin + b.spin).dot(o.normal), o);
-      const Eigen::Vector3d rolling = radius * turning.cross(o.normal);
-      const Eigen::Vector3d force = held(repulsion, rolling, dt, memory.roll);
-      const double twist = capped_spring(repulsion, twisting_friction, twisting_stiffness,
-                                         twisting_damping, turning.dot(o.normal), dt, memory.twist);
-      return radius * o.normal.cross(force) + twist * o.normal;
-    }
+    return moment(turning_of(a, b, o, dt), o, repulsion, dt, memory);
   }
 
   /// Stored in the springs, J.
@@ -91,15 +113,17 @@ struct RollingLaw {
   }
 
  private:
-  template <class T>
-  T held(double repulsion, const T& velocity, double dt, T& spring) const {
+  template <class N, class T>
+  [[gnu::always_inline]] T held(const N& repulsion, const T& velocity, double dt, T& spring) const {
     return capped_spring(repulsion, friction, stiffness, damping, velocity, dt, spring);
   }
   /// As friction_force; without a stiffness there is no spring, also beyond the cap.
-  template <class T>
-  static T capped_spring(double repulsion, double mu, double stiffness, double damping,
-                         const T& velocity, double dt, T& spring) {
-    const T force = friction_force(repulsion, mu, stiffness, damping, velocity, dt, spring);
+  template <class N, class T>
+  [[gnu::always_inline]] static T capped_spring(const N& repulsion, double mu, double stiffness,
+                                                double damping, const T& velocity, double dt,
+                                                T& spring) {
+    const T force =
+        friction_force(repulsion, N(zero<N>() + mu), stiffness, damping, velocity, dt, spring);
     if (!(stiffness > 0)) spring = zero<T>();
     return force;
   }

@@ -71,7 +71,7 @@ bool PlaneNetwork::geometry(const Pair& pair, const Place& p, Geometry& g) const
         if constexpr (ContactLaw<Law, 2>) {
           typename Law::template Memory<2> none;
           ContactMotion<2> at_rest;
-          at_rest.inverse_mass_i = 1;  // any: there is no velocity to damp
+          at_rest.inverse_mass = 1;  // any: there is no velocity to damp
           return law(o, at_rest, 0.0, 0.0, none).normal;
         }
         return 0.0;  // refused by the constructor

@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "dem/space/elementary.h"
-#include "dem/space/overlap.h"
+#include "dem/space/round_overlap.h"
 
 namespace grainfield::dem {
 
@@ -42,34 +42,17 @@ inline double segment_area(double radius, double arm, double half) {
 /// Returns false when they do not touch.
 template <bool with_area>
 inline bool overlap_of_disks(double dx, double dy, double ri, double rj, Overlap& overlap) {
-  const double squared = dx * dx + dy * dy;
-  const double reach = ri + rj;
-  if (squared >= reach * reach) return false;
-  const double distance = std::sqrt(squared);
-  const double inverse = 1 / distance;
-  overlap.depth = reach - distance;
-  if (!(distance > std::fabs(ri - rj) + 1e-12 * reach)) {
-    // One inside the other (or the same centre): no chord; the point is the smaller one's centre.
-    overlap.nx = distance > 0 ? dx * inverse : 1.0;
-    overlap.ny = distance > 0 ? dy * inverse : 0.0;
-    const double small = ri < rj ? ri : rj;
-    overlap.arm_i = ri < rj ? 0 : distance;
-    overlap.arm_j = distance - overlap.arm_i;
-    overlap.area = std::numbers::pi * small * small;
-    overlap.chord = 0;
-    overlap.length = 0.25 * small;
-    return true;
-  }
-  overlap.nx = dx * inverse;
-  overlap.ny = dy * inverse;
-  // Sagitta of each segment, without cancellation: r_i - arm_i = depth (2 r_j - depth) / (2 d).
-  const double half_inverse = 0.5 * inverse;
-  const double sag_i = overlap.depth * (2 * rj - overlap.depth) * half_inverse;
-  const double sag_j = overlap.depth - sag_i;
-  overlap.arm_i = ri - sag_i;
-  overlap.arm_j = rj - sag_j;
+  if (disks_apart(dx, dy, ri, rj)) return false;
+  [[maybe_unused]] const DisksMeet<double> meet = disks_meet(dx, dy, ri, rj, overlap);
   if constexpr (with_area) {
-    const double half = std::sqrt(sag_i * (ri + overlap.arm_i));
+    if (meet.inside) {
+      const double small = ri < rj ? ri : rj;
+      overlap.area = std::numbers::pi * small * small;
+      overlap.chord = 0;
+      overlap.length = 0.25 * small;
+      return true;
+    }
+    const double half = std::sqrt(meet.sag_i * (ri + overlap.arm_i));
     overlap.chord = 2 * half;
     overlap.area = segment_area(ri, overlap.arm_i, half) + segment_area(rj, overlap.arm_j, half);
     // An arm of a deep overlap can be negative; the length stays positive and bounded below.

@@ -8,14 +8,13 @@
 #include "dem/checkpoint/checkpoint.h"
 #include "dem/shapes/solid.h"
 #include "dem/space/body.h"
-#include "dem/space/overlap.h"
 #include "dem/space/plane.h"
+#include "dem/space/round_overlap.h"
 #include "dem/space/space3.h"
 
 namespace grainfield::dem {
 
-/// Two spheres that overlap share a lens; its edge is a circle, whose centre is the contact point,
-/// on the line of centres. Of a sphere inside another the contact point is its centre.
+/// With the contact point that round_overlap.h tells of.
 class SphereStore {
  public:
   static constexpr int dim = 3;
@@ -42,21 +41,9 @@ class SphereStore {
   template <Measures measures>
   bool overlap(int, const Body<3>& a, int, const Body<3>& b, Feature&, Overlap& o) const {
     const Eigen::Vector3d across = b.position - a.position;
-    const double squared = across.squaredNorm(), reach = a.radius + b.radius;
-    if (squared >= reach * reach) return false;
-    const double distance = std::sqrt(squared), inverse = 1 / distance;
-    o.depth = reach - distance;
-    o.normal = distance > 0 ? Eigen::Vector3d(inverse * across) : Eigen::Vector3d::UnitX();
-    o.radius = a.radius * b.radius / reach;
-    double arm_i = 0;  // from a, along the normal
-    if (distance > std::fabs(a.radius - b.radius)) {
-      // Without cancellation, as of two disks: r_i - arm_i = depth (2 r_j - depth) / (2 d).
-      arm_i = a.radius - o.depth * (2 * b.radius - o.depth) * (0.5 * inverse);
-    } else if (a.radius > b.radius) {
-      arm_i = distance;
-    }
-    o.arm_i = arm_i * o.normal;
-    o.arm_j = (arm_i - distance) * o.normal;
+    if (spheres_apart(across, a.radius, b.radius)) return false;
+    const SpheresMeet<double> meet = spheres_meet(across, a.radius, b.radius, o);
+    set_arms(meet.lever_i, meet.lever_j, o);
     if constexpr (measures == Measures::curvatures) set_curvatures(o);
     return true;
   }

@@ -5,14 +5,14 @@
 namespace grainfield::dem {
 
 /// Kinematics and inertia of one grain. A fixed grain has inverse mass and inertia 0.
-template <int D>
-struct alignas(D == 2 ? 64 : 32) Body {
-  VectorOf<D> position = zero<VectorOf<D>>();  ///< centroid, m
-  VectorOf<D> velocity = zero<VectorOf<D>>();  ///< m/s
-  SpinOf<D> spin = zero<SpinOf<D>>();          ///< rad/s
-  double radius = 0;                           ///< m
-  double inverse_mass = 0;                     ///< 1/kg
-  double inverse_inertia = 0;  ///< 1/(kg m2); in 3D of the mean moment: dashpots go by it
+template <int D, class N = double>
+struct alignas(D == 2 ? 64 : 32) alignas(N) Body {
+  VectorOf<D, N> position = zero<VectorOf<D, N>>();  ///< centroid, m
+  VectorOf<D, N> velocity = zero<VectorOf<D, N>>();  ///< m/s
+  SpinOf<D, N> spin = zero<SpinOf<D, N>>();          ///< rad/s
+  N radius = zero<N>();                              ///< m
+  N inverse_mass = zero<N>();                        ///< 1/kg
+  N inverse_inertia = zero<N>();  ///< 1/(kg m2); in 3D of the mean moment: dashpots go by it
 };
 static_assert(sizeof(Body<2>) == 64);
 
@@ -25,11 +25,11 @@ struct Inertia {
 };
 
 /// Force and torques of one contact, written by the contact loop, gathered per grain.
-template <int D>
+template <int D, class N = double>
 struct ContactForce {
-  VectorOf<D> force = zero<VectorOf<D>>();  ///< on the first grain, N
-  SpinOf<D> torque_i = zero<SpinOf<D>>();   ///< about the centroids, N m
-  SpinOf<D> torque_j = zero<SpinOf<D>>();
+  VectorOf<D, N> force = zero<VectorOf<D, N>>();  ///< on the first grain, N
+  SpinOf<D, N> torque_i = zero<SpinOf<D, N>>();   ///< about the centroids, N m
+  SpinOf<D, N> torque_j = zero<SpinOf<D, N>>();
 };
 
 /// Sum of forces on one grain.

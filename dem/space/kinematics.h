@@ -1,4 +1,5 @@
-// Velocities at a contact point and what a force there does: v + omega x r and r x F, once.
+// Velocities at a contact point and what a force there does: v + omega x r and r x F, once, of one
+// contact and of several side by side (number.h).
 //
 // In two dimensions all is said in the frame of the contact, with the normal n, the tangent
 // t = (-n_y, n_x) and the arms r_i = lever_i n + shift_i t, r_j = -lever_j n + shift_j t:
@@ -8,30 +9,33 @@
 #include "dem/space/overlap.h"
 #include "dem/space/space.h"
 
-namespace grainfield::dem {
+namespace grainfield::dem::inline GRAINFIELD_INSTRUCTIONS {
 
 /// Motion and inertia at a contact.
-template <int D>
+template <int D, class N = double>
 struct ContactMotion {
-  double approach = 0;                             ///< closing speed along the normal, m/s
-  TangentialOf<D> slip = zero<TangentialOf<D>>();  ///< velocity of i relative to j across it, m/s
-  double inverse_mass_i = 0, inverse_mass_j = 0;
-  double inverse_inertia_i = 0, inverse_inertia_j = 0;
+  N approach = zero<N>();  ///< closing speed along the normal, m/s
+  /// Velocity of i relative to j across it, m/s.
+  TangentialOf<D, N> slip = zero<TangentialOf<D, N>>();
+  N inverse_mass = zero<N>();  ///< sum of both, 1/kg
+  N inverse_inertia_i = zero<N>(), inverse_inertia_j = zero<N>();
 };
 
-template <int D>
-void set_inertia(const Body<D>& a, const Body<D>& b, ContactMotion<D>& m) {
-  m.inverse_mass_i = a.inverse_mass;
-  m.inverse_mass_j = b.inverse_mass;
+template <int D, class N>
+[[gnu::always_inline]] inline void set_inertia(const Body<D, N>& a, const Body<D, N>& b,
+                                               ContactMotion<D, N>& m) {
+  m.inverse_mass = a.inverse_mass + b.inverse_mass;
   m.inverse_inertia_i = a.inverse_inertia;
   m.inverse_inertia_j = b.inverse_inertia;
 }
 
 /// `central`: the contact point lies on the line of centres, so levers are arms and shifts 0.
-template <bool central>
-inline ContactMotion<2> motion_at(const Body<2>& a, const Body<2>& b, const Overlap& o) {
-  const double vx = a.velocity.x() - b.velocity.x(), vy = a.velocity.y() - b.velocity.y();
-  ContactMotion<2> m;
+template <bool central, class N>
+[[gnu::always_inline]] inline ContactMotion<2, N> motion_at(const Body<2, N>& a,
+                                                            const Body<2, N>& b,
+                                                            const Overlap2Of<N>& o) {
+  const N vx = a.velocity.x() - b.velocity.x(), vy = a.velocity.y() - b.velocity.y();
+  ContactMotion<2, N> m;
   m.approach = vx * o.nx + vy * o.ny;
   if constexpr (central) {
     m.slip = vy * o.nx - vx * o.ny + a.spin * o.arm_i + b.spin * o.arm_j;
@@ -43,10 +47,12 @@ inline ContactMotion<2> motion_at(const Body<2>& a, const Body<2>& b, const Over
   return m;
 }
 
-/// Forces by a repulsion `normal` and a force `tangential` on the first body along t, N.
-template <bool central>
-inline ContactForce<2> forces_at(const Overlap& o, double normal, double tangential) {
-  ContactForce<2> f;
+/// Of a repulsion `normal` and a force `tangential` on the first body along t, N.
+template <bool central, class N>
+[[gnu::always_inline]] inline ContactForce<2, N> forces_at(
+    const Overlap2Of<N>& o, const std::type_identity_t<N>& normal,
+    const std::type_identity_t<N>& tangential) {
+  ContactForce<2, N> f;
   f.force.x() = -normal * o.nx - tangential * o.ny;
   f.force.y() = -normal * o.ny + tangential * o.nx;
   if constexpr (central) {
@@ -77,4 +83,4 @@ inline double tangential_of(const VectorOf<2>& force, const Overlap& o) {
   return force.y() * o.nx - force.x() * o.ny;
 }
 
-}  // namespace grainfield::dem
+}  // namespace grainfield::dem::inline GRAINFIELD_INSTRUCTIONS

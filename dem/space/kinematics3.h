@@ -3,27 +3,36 @@
 #include "dem/space/kinematics.h"
 #include "dem/space/space3.h"
 
-namespace grainfield::dem {
+namespace grainfield::dem::inline GRAINFIELD_INSTRUCTIONS {
 
-template <bool central>
-inline ContactMotion<3> motion_at(const Body<3>& a, const Body<3>& b, const Overlap3& o) {
-  const Eigen::Vector3d v = a.velocity - b.velocity + a.spin.cross(o.arm_i) - b.spin.cross(o.arm_j);
-  ContactMotion<3> m;
+template <bool central, class N>
+[[gnu::always_inline]] inline ContactMotion<3, N> motion_at(const Body<3, N>& a,
+                                                            const Body<3, N>& b,
+                                                            const Overlap3Of<N>& o) {
+  const VectorOf<3, N> v = a.velocity - b.velocity + a.spin.cross(o.arm_i) - b.spin.cross(o.arm_j);
+  ContactMotion<3, N> m;
   m.approach = v.dot(o.normal);
   m.slip = v - m.approach * o.normal;
   set_inertia(a, b, m);
   return m;
 }
 
-template <bool central>
-inline ContactForce<3> forces_at(const Overlap3& o, double normal,
-                                 const Eigen::Vector3d& tangential) {
-  ContactForce<3> f;
-  f.force = tangential - normal * o.normal;
-  // Where the arms lie along the normal, the repulsion has none.
-  const Eigen::Vector3d turning = central ? tangential : f.force;
+/// Of a force, or of that part of it which is not along the arms.
+template <class N>
+[[gnu::always_inline]] inline void set_torques(const Overlap3Of<N>& o,
+                                               const VectorOf<3, N>& turning,
+                                               ContactForce<3, N>& f) {
   f.torque_i = o.arm_i.cross(turning);
   f.torque_j = -o.arm_j.cross(turning);
+}
+template <bool central, class N>
+[[gnu::always_inline]] inline ContactForce<3, N> forces_at(const Overlap3Of<N>& o,
+                                                           const std::type_identity_t<N>& normal,
+                                                           const VectorOf<3, N>& tangential) {
+  ContactForce<3, N> f;
+  f.force = tangential - normal * o.normal;
+  // Where the arms lie along the normal, the repulsion has none.
+  set_torques<N>(o, central ? tangential : f.force, f);
   return f;
 }
 
@@ -33,7 +42,8 @@ inline Eigen::Vector3d point_at(const Body<3>& a, const Overlap3& o) {
 }
 
 inline Eigen::Vector3d normal_of(const Overlap3& o) { return o.normal; }
-inline double repulsion_of(const Eigen::Vector3d& force, const Overlap3& o) {
+template <class N>
+[[gnu::always_inline]] inline N repulsion_of(const VectorOf<3, N>& force, const Overlap3Of<N>& o) {
   return -force.dot(o.normal);
 }
 inline Eigen::Vector3d tangential_of(const Eigen::Vector3d& force, const Overlap3& o) {
@@ -42,14 +52,26 @@ inline Eigen::Vector3d tangential_of(const Eigen::Vector3d& force, const Overlap
 
 /// A spring (N, across the former normal) turns with the contact: into the plane across `normal`,
 /// its size kept, and by `twist` (rad) about it.
-inline void turn_with_contact(Eigen::Vector3d& spring, const Eigen::Vector3d& normal, double twist,
-                              const Overlap3& /*o*/) {
-  const double before = spring.squaredNorm();
-  if (!(before > 0)) return;
-  spring -= spring.dot(normal) * normal;
-  spring += twist * normal.cross(spring);
-  const double now = spring.squaredNorm();
-  if (now > 0) spring *= std::sqrt(before / now);
+template <class N>
+[[gnu::always_inline]] inline void turn_with_contact(VectorOf<3, N>& spring,
+                                                     const VectorOf<3, N>& normal, const N& twist,
+                                                     const Overlap3Of<N>& /*o*/) {
+  using V = VectorOf<3, N>;
+  const N before = spring.squaredNorm();
+  if constexpr (!are_lanes<N>) {
+    if (!(before > 0)) return;
+  }
+  V turned = spring - spring.dot(normal) * normal;
+  turned = turned + twist * normal.cross(turned);
+  const N now = turned.squaredNorm();
+  turned = chosen(now > 0, V(root(N(before / now)) * turned), turned);
+  spring = chosen(before > 0, turned, spring);
+}
+/// How far both bodies turn about the normal in dt, s, in the mean: rad.
+template <class N>
+[[gnu::always_inline]] inline N twist_of(const Body<3, N>& a, const Body<3, N>& b,
+                                         const Overlap3Of<N>& o, double dt) {
+  return 0.5 * dt * (a.spin + b.spin).dot(o.normal);
 }
 
 /// v turned by `turn` (rad, its direction the axis).
@@ -81,4 +103,4 @@ inline void turn_with_material(Eigen::Vector3d& spring, const Eigen::Vector3d& n
   if (now > 0) spring *= size / now;
 }
 
-}  // namespace grainfield::dem
+}  // namespace grainfield::dem::inline GRAINFIELD_INSTRUCTIONS

@@ -2,7 +2,7 @@
 #pragma once
 #include "dem/space/lanes.h"
 
-namespace grainfield::dem {
+namespace grainfield::dem::inline GRAINFIELD_INSTRUCTIONS {
 
 /// Four columns.
 template <int W>
@@ -144,4 +144,4 @@ template <int W, class Visit>
   }
 }
 
-}  // namespace grainfield::dem
+}  // namespace grainfield::dem::inline GRAINFIELD_INSTRUCTIONS

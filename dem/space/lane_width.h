@@ -1,11 +1,12 @@
 // How many numbers side by side (lanes.h) the kernels take: chosen once a program, by what the
 // processor has. Every width gives the same bits.
 //
-// What a new shape or law needs for lanes: its kernel in a file of its own, a template over the
-// width W that reads and writes plain arrays, instantiated for GRAINFIELD_LANES alone and named in
-// dem/CMakeLists.txt (pair_step.cc for shapes, elliptic_lanes.cc for laws); for a shape, a Batch
-// with put and finish (shape.h); for a law, lanes() (law.h); or what whole rows of pairs need
-// (engine/row_forces.h). Without them pairs go one by one.
+// What a new shape or law needs for lanes: a text over any number (number.h; law.h), or its kernel
+// in a file of its own, a template over the width W that reads and writes plain arrays,
+// instantiated for GRAINFIELD_LANES alone and named in dem/CMakeLists.txt (pair_step.cc for shapes,
+// elliptic_lanes.cc for laws); for a shape, a Batch with put and finish (shape.h); for a law,
+// lanes() (law.h); or what whole rows of pairs need (engine/row_forces.h). Without them pairs go
+// one by one.
 #pragma once
 #include <type_traits>
 

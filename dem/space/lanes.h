@@ -1,20 +1,31 @@
 // Numbers side by side, for code that does the same to each: W of them in a vector of the
 // processor, or in several. Each comes out with the bits that it would have alone.
 //
-// Files that include this are compiled once for each width (dem/CMakeLists.txt), for processors
-// that not every machine has: they share no inline function with other files.
+// Kernels that include this are compiled once for each width (dem/CMakeLists.txt), for processors
+// that not every machine has. What is inline here, and the text of the physics (number.h), is in a
+// namespace of each set of instructions: no file gets another's.
 #pragma once
-#if defined(__x86_64__)
+#if defined(__AVX__)
 #include <immintrin.h>
+#elif defined(__x86_64__)
+#include <emmintrin.h>
 #endif
 #include <cstdint>
+#include <type_traits>
 
 // Where the build does not say otherwise, what every processor has.
 #ifndef GRAINFIELD_LANES
 #define GRAINFIELD_LANES 2
 #endif
+#if GRAINFIELD_LANES == 8
+#define GRAINFIELD_INSTRUCTIONS avx512
+#elif GRAINFIELD_LANES == 4
+#define GRAINFIELD_INSTRUCTIONS avx2
+#else
+#define GRAINFIELD_INSTRUCTIONS baseline
+#endif
 
-namespace grainfield::dem {
+namespace grainfield::dem::inline GRAINFIELD_INSTRUCTIONS {
 
 template <int W>
 struct LanesOf {
@@ -34,7 +45,12 @@ template <int W, class Get>
 }
 template <class V>
 [[gnu::always_inline]] inline V magnitude(const V& x) {
-  return x < 0 ? -x : x;
+  // Of one number without a branch: which of two is greater cannot be foreseen.
+  if constexpr (std::is_same_v<V, double>) {
+    return __builtin_fabs(x);
+  } else {
+    return x < 0 ? V(-x) : x;
+  }
 }
 template <class V>
 [[gnu::always_inline]] inline V greater_of(const V& x, const V& y) {
@@ -126,4 +142,4 @@ template <int W>
   }
 }
 
-}  // namespace grainfield::dem
+}  // namespace grainfield::dem::inline GRAINFIELD_INSTRUCTIONS

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "dem/space/lanes3.h"
+
 namespace grainfield::dem {
 
 /// A vector whose layout is the same in every file, whatever Eigen's alignment there.
@@ -26,22 +28,41 @@ struct Space<2> {
   static double angle_between(double a, double b) { return std::fabs(a - b); }
 };
 
+/// The same of other numbers (number.h).
+template <int D, class N>
+struct SpaceOf {
+  using Vector = Eigen::Matrix<N, D, 1, D == 2 ? Eigen::DontAlign : Eigen::AutoAlign>;
+  using Spin = std::conditional_t<D == 2, N, Vector>;
+  using Tangential = Spin;
+};
+template <int D, class N>
+requires are_lanes<N>
+struct SpaceOf<D, N> {
+  using Vector = std::conditional_t<D == 2, Two<lanes_in<N>>, Three<lanes_in<N>>>;
+  using Spin = std::conditional_t<D == 2, N, Vector>;
+  using Tangential = Spin;
+};
 template <int D>
-using VectorOf = typename Space<D>::Vector;
-template <int D>
-using SpinOf = typename Space<D>::Spin;
-template <int D>
-using TangentialOf = typename Space<D>::Tangential;
+struct SpaceOf<D, double> : Space<D> {};
+
+template <int D, class N = double>
+using VectorOf = typename SpaceOf<D, N>::Vector;
+template <int D, class N = double>
+using SpinOf = typename SpaceOf<D, N>::Spin;
+template <int D, class N = double>
+using TangentialOf = typename SpaceOf<D, N>::Tangential;
 template <int D>
 using RotationOf = typename Space<D>::Rotation;
 
 /// 0 of a number or of a vector.
 template <class T>
 T zero() {
-  if constexpr (std::is_arithmetic_v<T>) {
-    return 0;
-  } else {
+  if constexpr (requires { T::Zero(); }) {
     return T::Zero();
+  } else if constexpr (are_lanes<T>) {
+    return T{};
+  } else {
+    return T(0);
   }
 }
 

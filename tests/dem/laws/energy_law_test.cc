@@ -68,7 +68,7 @@ Loop round(const Law& law, const Outlines& shapes, const Path& path, int steps) 
   Loop out;
   const Placed a(shapes.a, 0, 0);
   ContactMotion<2> at_rest;
-  at_rest.inverse_mass_i = 1;
+  at_rest.inverse_mass = 1;
   for (int k = 0; k < steps; ++k) {
     const auto begin = path.at(kTwoPi * k / steps), end = path.at(kTwoPi * (k + 1) / steps),
                middle = path.at(kTwoPi * (k + 0.5) / steps);
@@ -172,7 +172,7 @@ TEST(EnergyLaw, ThePowerIsRoulsLawForDisks) {
     const double roul = law.young * o.area / o.length;
     o.length = 0.5;
     ContactMotion<2> at_rest;
-    at_rest.inverse_mass_i = 1;
+    at_rest.inverse_mass = 1;
     SpringMemory<2> memory;
     const double force = law(o, at_rest, 0, 0, memory).normal;
     EXPECT_NEAR(force / (law.young * o.area / o.length), fixed, 6e-4) << overlap;
@@ -195,7 +195,7 @@ TEST(EnergyLaw, StiffnessEdgeOnEdge) {
       EXPECT_TRUE(overlap_of_shapes(a.shape(), b.shape(), feature, o, Measures::gradient));
       set_constant_length(equal, equal, o);
       ContactMotion<2> at_rest;
-      at_rest.inverse_mass_i = 1;
+      at_rest.inverse_mass = 1;
       SpringMemory<2> memory;
       EXPECT_NEAR(o.chord, 1, 1e-9);
       return law(o, at_rest, 0, 0, memory).normal;

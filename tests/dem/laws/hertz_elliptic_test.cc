@@ -205,8 +205,7 @@ ContactMotion<3> motion(double approach, const Vector3d& slip) {
   ContactMotion<3> m;
   m.approach = approach;
   m.slip = slip;
-  m.inverse_mass_i = 1;
-  m.inverse_mass_j = 3;
+  m.inverse_mass = 4;
   return m;
 }
 

@@ -35,7 +35,7 @@ Overlap3 overlap_of(double depth) {
 class Path {
  public:
   Path(const HertzLaw& law, double mu, double depth) : law_(law), mu_(mu), depth_(depth) {
-    motion_.inverse_mass_i = motion_.inverse_mass_j = 1;
+    motion_.inverse_mass = 2;
   }
   void move(double to_depth, const Vector3d& by, int steps) {
     const double from = depth_;
@@ -180,8 +180,7 @@ TEST(Hertz, ViscoelasticDashpotsGoByTheContactsRadius) {
   law.tangential_damping = 1e5;
   const Overlap3 o = overlap_of(2e-5);
   ContactMotion<3> m;
-  m.inverse_mass_i = 3;
-  m.inverse_mass_j = 1;
+  m.inverse_mass = 4;
   m.approach = 0.1;
   m.slip = Vector3d(0, 0.02, 0);
   HertzMemory<3> memory;
