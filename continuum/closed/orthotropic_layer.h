@@ -12,7 +12,7 @@
 // Solutions are exp(-m s) (a C(s) + b S(s)) and the same from the base up, with
 //   m^2 = (r + sqrt t)/2,  D = (r - sqrt t)/2,  C = cosh(sqrt(D) s),  S = sinh(sqrt(D) s)/sqrt(D):
 // real for either sign of D, and not degenerate at D = 0 (r = t = 1: the isotropic layer).
-// What the base adds falls like exp(-k (2h - d)), also under the load.
+// The base adds what falls like exp(-k (2h - d)), also under the load.
 #pragma once
 #include <Eigen/Core>
 #include <functional>
@@ -38,7 +38,7 @@ class OrthotropicWaves {
   void integrate_base(const Eigen::ArrayXd& share, double phase, const Take& take) const;
   /// g'', g, g' of layer and half plane together; shares x 3.
   Eigen::MatrixX3d total(double u, const Eigen::VectorXd& share) const;
-  /// What the base adds falls like exp(-decay u (2 - share)); decay of the faster wave.
+  /// The base adds what falls like exp(-decay u (2 - share)); decay of the faster wave.
   double decay() const;
   double fast_decay() const { return 2 * m_ - decay(); }
   /// Waves of the integrand over u: sqrt(-D) for D < 0, else 0.
@@ -68,7 +68,7 @@ class OrthotropicWaves {
 Eigen::MatrixX3d orthotropic_layer_stress(const OrthotropicWaves& waves, const Orthotropy& medium,
                                           double F, double h, const Eigen::MatrixXd& points);
 
-/// The same as a model with these figures, nan outside the layer.
+/// This stress as a model with these figures, nan outside the layer.
 std::unique_ptr<Model> layer_in_plane(double F, double h, const Orthotropy& medium,
                                       const OrthotropicWaves& waves,
                                       std::map<std::string, double> figures);

@@ -62,7 +62,7 @@ std::vector<Parameter> layer_parameters() {
       whole_number("cells", "cells over the depth before refinement", "numerics", 2, 1, 1000)};
 }
 
-// As many unknowns as fill the layer with cells of the given degree.
+// The first mesh fills the layer with cells of the given degree.
 FirstMesh layer_mesh(const Settings& s, bool space) {
   const double down = number_of(s, "cells") * nonzero_or(s, "degree", space ? 2 : 3);
   const double across = 2 * number_of(s, "half_width") * down;

@@ -73,7 +73,7 @@ struct WedgeResult {
   /// (Zienkiewicz and Zhu 1987); and all of them over the 2-norm of the stress.
   std::vector<double> errors;
   double relative_error = 0;
-  /// Those that each triangle of the lattice was cut into.
+  /// Parts into which each triangle of the lattice was cut.
   std::vector<std::vector<int>> pieces;
   /// Force of the ground on the heap; a cone's radial forces are summed without regard to
   /// direction.
@@ -108,8 +108,7 @@ struct WedgeCore {
 /// Throws BadParameter naming the value found and what is allowed.
 void check_wedge(const WedgeProblem& problem);
 
-/// What the models fe_mohr_coulomb_wedge and fe_cone have in common: the problem of complete
-/// settings. Throws as check_wedge.
+/// The problem of complete settings of fe_mohr_coulomb_wedge and fe_cone. Throws as check_wedge.
 WedgeProblem heap_problem(const Settings& settings, bool cone);
 /// Figures of the solution that both have.
 std::map<std::string, double> heap_figures(const WedgeResult& result, const WedgeCore& core);
