@@ -58,6 +58,15 @@ def git(*words, folder=ROOT):
     return done.stdout.strip()
 
 
+def lower_session(pid):
+    """Lets a session give way. Linux shares the processor out to sessions first, and only within one
+    by the priority of its processes."""
+    try:
+        pathlib.Path(f"/proc/{pid}/autogroup").write_text("19")
+    except OSError:  # a kernel without such groups
+        pass
+
+
 class Lock:
     """A file that one process has at a time; False where another has it."""
 
@@ -177,6 +186,7 @@ def compute(source, run, folder, deadline):
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     with open(folder / "log.txt", "a") as log:
         child = subprocess.Popen(command, cwd=source, stdout=log, stderr=log, start_new_session=True)
+        lower_session(child.pid)
         signal.signal(signal.SIGTERM, lambda *_: child.send_signal(signal.SIGINT))
         signal.signal(signal.SIGINT, lambda *_: child.send_signal(signal.SIGINT))
         try:
