@@ -206,19 +206,22 @@ def read_table(file):
              for name, value in row.items()} for row in csv.DictReader(lines)]
 
 
+def line_at(table, depth):
+    """Places and vertical compression along the row of a field that is nearest to this part of its depth."""
+    heights = numpy.array([row["y"] for row in table])
+    height = heights[numpy.argmin(abs(heights - depth * heights.min()))]
+    return numpy.array(sorted((row["x"], -row["strain_yy"]) for row in table
+                              if row["y"] == height and math.isfinite(row["strain_yy"]))).T
+
+
 def strain_of(files):
     """Peaks and widths of the mean vertical strain of loaded layers, by the tables of their fields."""
     tables = [read_table(file) for file in files]
-    places = [(row["x"], row["y"]) for row in tables[0]]
-    if any([(row["x"], row["y"]) for row in table] != places for table in tables):
-        raise ValueError("fields on unlike grids")
-    mean = numpy.mean([[-row["strain_yy"] for row in table] for table in tables], axis=0)
-    heights = numpy.array([y for _, y in places])
     found = []
     for depth in DEPTHS:
-        height = heights[numpy.argmin(abs(heights - depth * heights.min()))]
-        line = sorted((x, value) for (x, y), value in zip(places, mean) if y == height and math.isfinite(value))
-        x, values = numpy.array(line).T
+        lines = [line_at(table, depth) for table in tables]
+        x = lines[0][0]
+        values = numpy.mean([numpy.interp(x, *line) for line in lines], axis=0)
         found.append((peaks(values), width(x, values)))
     return {"ensemble.realizations": len(files), "strain.peaks": max(n for n, _ in found),
             "strain.width_ratio": found[-1][1] / found[0][1]}
