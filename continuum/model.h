@@ -102,13 +102,13 @@ struct Figure {
 /// Makes a model from complete settings; throws BadParameter.
 using MakeModel = std::function<std::unique_ptr<Model>(const Settings&)>;
 
-/// What a finite-element model begins with.
+/// The mesh with which a finite-element model begins.
 struct FirstMesh {
   double unknowns = 0;
   std::vector<std::string> parameters;  ///< that make it fine
 };
 
-/// What the registry knows of a model before its parameters are set; settings are complete ones.
+/// The registry knows this of a model before its parameters are set; settings are complete ones.
 struct ModelInfo {
   std::string name;     ///< as in `grainfield model NAME`
   std::string summary;  ///< one line
@@ -119,7 +119,7 @@ struct ModelInfo {
   /// Why a parameter has no effect with these settings and what to do, e.g. "beside map = m.csv,
   /// which replaces it; leave one of the two out"; empty: it has one. Besides Parameter::only_with.
   std::function<std::string(const std::string& parameter, const Settings&)> without_effect = {};
-  /// What it costs, told before anything is allocated. Throws BadParameter where there is no mesh.
+  /// Its cost, told before anything is allocated. Throws BadParameter where there is no mesh.
   std::function<FirstMesh(const Settings&)> first_mesh = {};
 };
 

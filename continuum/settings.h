@@ -24,7 +24,7 @@ Parameter optional_number(std::string name, std::string unit, std::string meanin
 /// The same parameter, which may be free in a fit: the search keeps to least < value < most.
 Parameter may_be_free(Parameter parameter, double least, double most,
                       double floor = -std::numeric_limits<double>::infinity());
-/// The same parameter, without effect unless the parameter `other` is one of these words.
+/// This parameter, without effect unless the parameter `other` is one of these words.
 Parameter only_with(Parameter parameter, std::string other, std::vector<std::string> words);
 /// A numerical parameter that takes whole numbers only.
 Parameter whole_number(std::string name, std::string meaning, std::string source, int value,
@@ -44,7 +44,7 @@ Settings complete(const ModelInfo& info, const Settings& settings);
 
 /// The number of a parameter in settings that complete() returned.
 double number_of(const Settings& settings, const std::string& name);
-/// The same, or `standard` where it is 0.
+/// Its number, or `standard` where it is 0.
 double nonzero_or(const Settings& settings, const std::string& name, double standard);
 
 }  // namespace grainfield::continuum

@@ -353,7 +353,7 @@ MarchResult march(const Problem& problem, const StripMesh& mesh, const Eigen::Ma
   f["base_force"] = total();
   f["side_force"] = integrator.state()[2 * mesh.columns_count()];
   f["weight"] = integrator.state()[2 * mesh.columns_count() + 1];
-  // What the march starts with is in a heap the weight of the tip.
+  // The march of a heap starts with the weight of the tip.
   (mesh.spread > 0 ? f["weight"] : f["load"]) += initial;
   const double largest = std::max({std::abs(f["base_force"]), std::abs(f["weight"]),
                                    std::abs(f["load"]), std::numeric_limits<double>::min()});
