@@ -1,6 +1,7 @@
 // Scenes whose end states are known to the bit. Nothing in them depends on the C library's sine and
 // cosine: outlines are given as numbers or turned by rotation.h.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <functional>
@@ -76,34 +77,51 @@ struct Scene {
   std::vector<std::pair<long, std::function<void(Engine&)>>> events;
 };
 
-/// The end state. `cut`: step at which the engine is written as a checkpoint and another one, on
-/// `threads_after` threads, goes on from it; -1: never.
-inline Snapshot end_of(const Scene& scene, int threads, long cut = -1, int threads_after = 1) {
+inline std::unique_ptr<Engine> box_of(const Scene& scene, int threads) {
   EngineSettings settings = scene.settings;
   settings.threads = threads;
-  const auto box = [&] {
-    auto engine = make_engine(settings);
-    for (const Wall& wall : scene.walls) engine->add_wall(wall);
-    return engine;
-  };
-  auto engine = box();
+  auto engine = make_engine(settings);
+  for (const Wall& wall : scene.walls) engine->add_wall(wall);
+  return engine;
+}
+
+/// The end state. `step_to` makes steps up to the one given; it may put another engine in its
+/// place.
+inline Snapshot end_of(const Scene& scene, std::unique_ptr<Engine>& engine,
+                       const std::function<void(long)>& step_to) {
   for (const NewGrain& g : scene.grains) engine->add(g);
-  const auto step_to = [&](long step) {
-    if (cut > engine->steps() && cut <= step) {
-      engine->step(cut - engine->steps());
-      const std::string checkpoint = engine->checkpoint();
-      settings.threads = threads_after;
-      engine = box();
-      engine->restore(checkpoint);
-    }
-    engine->step(step - engine->steps());
-  };
   for (const auto& [step, event] : scene.events) {
     step_to(step);
     event(*engine);
   }
   step_to(scene.steps);
   return engine->snapshot();
+}
+
+/// The end state. `cut`: step at which the engine is written as a checkpoint and another one, on
+/// `threads_after` threads, goes on from it; -1: never.
+inline Snapshot end_of(const Scene& scene, int threads, long cut = -1, int threads_after = 1) {
+  auto engine = box_of(scene, threads);
+  return end_of(scene, engine, [&](long step) {
+    if (cut > engine->steps() && cut <= step) {
+      engine->step(cut - engine->steps());
+      const std::string checkpoint = engine->checkpoint();
+      engine = box_of(scene, threads_after);
+      engine->restore(checkpoint);
+    }
+    engine->step(step - engine->steps());
+  });
+}
+
+/// The end state on one thread; `look` sees the engine every 500 steps.
+inline Snapshot end_of(const Scene& scene, const std::function<void(const Engine&)>& look) {
+  auto engine = box_of(scene, 1);
+  return end_of(scene, engine, [&](long step) {
+    while (engine->steps() < step) {
+      engine->step(std::min(500L, step - engine->steps()));
+      look(*engine);
+    }
+  });
 }
 
 inline std::vector<Wall> walls_of_box(double width) {

@@ -18,6 +18,7 @@ using testing::Folder;
 // Grains and bytes up to which a case is run; of larger ones reading is tested alone.
 constexpr double kGrains = 4000, kBytes = 1e9;
 constexpr double kSeconds = 10;
+constexpr double kEnough = 1;  // s after which a run need not go on
 
 std::vector<std::string> values_of(const Key& key) {
   const std::string type = type_name(key);
@@ -184,8 +185,8 @@ void try_ten_steps(const Study& study, const std::string& file, const Overrides&
   try {
     const auto run = study.make_run(value, 0, 1);
     // Some advance by more than they are asked; they ask whether to go on.
-    run->set_watch([&](const dem::Progress&) { return seconds() < kSeconds / 2; });
-    for (int step = 0; step < 10 && !run->done() && seconds() < kSeconds / 2; ++step) {
+    run->set_watch([&](const dem::Progress&) { return seconds() < kEnough; });
+    for (int step = 0; step < 10 && !run->done() && seconds() < kEnough; ++step) {
       run->advance(1);
       EXPECT_TRUE(finite(run->progress()));
     }

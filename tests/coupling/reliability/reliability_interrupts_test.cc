@@ -5,7 +5,7 @@
 namespace grainfield::coupling::testing {
 namespace {
 
-TEST(Interrupts, NothingIsLost) { interrupt_runs(8, 2, 0.3).print("interrupts"); }
+TEST(Interrupts, NothingIsLost) { interrupt_runs(5, 2, 0.3).print("interrupts"); }
 
 // Each of these lost something once.
 TEST(Interrupts, AtEverySpot) {

@@ -14,11 +14,6 @@ void PrintTo(const Scene& scene, std::ostream* out) { *out << scene.name; }
 namespace {
 
 constexpr double kCell = 0.02;
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kMostThreads = 1;  // ten times slower; the restart runs on two
-#else
-constexpr int kMostThreads = 3;
-#endif
 
 Scene falling(std::string name, std::uint64_t hash, Kind kind, bool linear, IntegratorKind how) {
   Scene s;
@@ -119,44 +114,31 @@ std::vector<Scene> scenes() {
 
 class Bits : public testing::TestWithParam<Scene> {};
 
+// On one thread; and on three to the middle, on four from a checkpoint there.
 TEST_P(Bits, AreThoseRecorded) {
   const Scene& scene = GetParam();
   const auto expect = [&](const Snapshot& end, const std::string& how) {
     const std::uint64_t found = hash_of(end);
     EXPECT_EQ(found, scene.hash) << scene.name << how << fmt::format(": 0x{:016x}", found);
   };
-  for (int threads = 1; threads <= kMostThreads; ++threads) {
-    expect(end_of(scene, threads), fmt::format(", {} threads", threads));
-  }
-  expect(end_of(scene, 1, scene.steps / 2 - 123, 2), ", restarted");
-}
-
-// A scene without contacts, or where all sleep or nobody does, would pin less than it says.
-TEST_P(Bits, OfWhatTheSceneIsMadeFor) {
-  const Scene& scene = GetParam();
-  EngineSettings settings = scene.settings;
-  const auto engine = make_engine(settings);
-  for (const Wall& wall : scene.walls) engine->add_wall(wall);
-  for (const NewGrain& g : scene.grains) engine->add(g);
+  // A scene without contacts, or where all sleep or nobody does, would pin less than it says.
   int least = 1000, most = 0, sliding = 0, contacts = 0;
-  std::size_t event = 0;
-  while (engine->steps() < scene.steps) {
-    for (; event < scene.events.size() && scene.events[event].first == engine->steps(); ++event) {
-      scene.events[event].second(*engine);
-    }
-    engine->step(500);
-    const Diagnostics d = engine->measure();
+  const Snapshot end = end_of(scene, [&](const Engine& engine) {
+    const Diagnostics d = engine.measure();
     least = std::min(least, d.awake);
     most = std::max(most, d.awake);
     sliding = std::max(sliding, d.sliding);
     contacts = std::max(contacts, d.contacts);
-  }
-  EXPECT_GT(contacts, 0.7 * engine->grains());
+  });
+  expect(end, "");
+  const auto grains = static_cast<double>(end.grains.size());
+  EXPECT_GT(contacts, 0.7 * grains);
   EXPECT_GT(sliding, 0);
   EXPECT_GT(most, 10);
-  if (settings.sleep.on) {
-    EXPECT_LT(least, 0.7 * engine->grains());
+  if (scene.settings.sleep.on) {
+    EXPECT_LT(least, 0.7 * grains);
   }
+  expect(end_of(scene, 3, scene.steps / 2 - 123, 4), ", restarted on other threads");
 }
 
 INSTANTIATE_TEST_SUITE_P(Pinned, Bits, testing::ValuesIn(scenes()),
