@@ -27,12 +27,13 @@ template <class Add>
 void each_in_cone(const Vector3d& axis, double angle, double r0, double r1, int n, int round,
                   Add&& add) {
   const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis);
+  const std::vector<Node> radii = gauss_points(n, r0, r1);
   for (const Node& c : gauss_points(n, std::cos(angle), 1)) {
     const double s = std::sqrt(std::max(0.0, 1 - c.at * c.at));
     for (int k = 0; k < round; ++k) {
       const double phi = 2 * kPi * (k + 0.5) / round;
       const Vector3d direction = turn * Vector3d(s * std::cos(phi), s * std::sin(phi), c.at);
-      for (const Node& r : gauss_points(n, r0, r1))
+      for (const Node& r : radii)
         add(r.at * direction, r.at * r.at * r.weight * c.weight * 2 * kPi / round);
     }
   }

@@ -185,8 +185,11 @@ Snapshot named_snapshot(const Engine& engine, const std::string& state, std::uin
 
 bool at_rest(const Diagnostics& d, const RestSetup& rest) {
   return d.unbalanced_force_ratio <= rest.unbalanced_force_ratio &&
-         d.unbalanced_moment_ratio <= rest.unbalanced_force_ratio &&
-         d.kinetic_energy <= rest.kinetic_to_elastic_energy * d.elastic_energy;
+         d.unbalanced_moment_ratio <= rest.unbalanced_force_ratio && energy_at_rest(d, rest);
+}
+
+bool energy_at_rest(const Diagnostics& d, const RestSetup& rest) {
+  return d.kinetic_energy <= rest.kinetic_to_elastic_energy * d.elastic_energy;
 }
 
 double rest_progress(const Diagnostics& d, const RestSetup& rest) {

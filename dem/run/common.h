@@ -62,6 +62,8 @@ Snapshot named_snapshot(const Engine& engine, const std::string& state, std::uin
                         const std::map<std::string, std::string>& attributes);
 
 bool at_rest(const Diagnostics& state, const RestSetup& rest);
+/// The kinetic energy is at rest; at_rest asks for the forces as well.
+bool energy_at_rest(const Diagnostics& state, const RestSetup& rest);
 /// How far a rest has come, in [0, 1]: on the logarithms of the unbalanced force ratio and of
 /// kinetic over elastic energy, whichever is further from its goal.
 double rest_progress(const Diagnostics& state, const RestSetup& rest);

@@ -20,6 +20,13 @@ std::vector<SummaryKey> simulated() {
       {"dem.layer_height", "m", "height of the layer from its columns' highest grains"},
       {"dem.layer_width", "m", "distance of the side walls"},
       {"base.response_over_load", "-", "vertical base force, loaded - unloaded, over the load"},
+      {"rest.by_newton", "-",
+       "share of realizations that Newton's method brought to rest before the load; in the others "
+       "it failed, and damped dynamics did"},
+      {"rest.unbalanced_force_ratio", "-",
+       "mean resultant over mean contact force that it reached"},
+      {"rest.load_steps", "-", "its load steps"},
+      {"rest.iterations", "-", "its iterations in all of them"},
       {"load.force", "N", "applied force F"},
       {"load.force_over_weight", "-", "3D: F over the mean weight of a grain"},
       {"load.grains", "-", "3D: grains that share it"},

@@ -97,6 +97,10 @@ void declare_packing_keys(SectionKeys s) {
 }
 
 void declare_load_keys(SectionKeys s) {
+  s.word("rest", IN(load.rest), {"damped", "newton"},
+         "how the layer comes to rest before the load: by slow damped dynamics, or by these until "
+         "rest.kinetic_to_elastic_energy is met and then by the quasi-static solver, which lowers "
+         "the forces to rest.unbalanced_force_ratio; where it fails damped dynamics go on");
   s.number("force", "N", IN(load.force), kForce,
            "downwards on one grain of the surface; more rearranges grains; in space where "
            "load.weights is 0",

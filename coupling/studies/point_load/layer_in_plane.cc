@@ -59,6 +59,7 @@ double row_time(const PointLoadSetup& s, double radius) {
 
 void Layer<2>::check(const Setup& s) {
   check_packing(s.packing);
+  check_method("load.rest", s.load.rest, s.material, s.motion);
   check_method("load.method", s.load.method, s.material, s.motion);
   grains_of(s.packing);
 }

@@ -43,10 +43,13 @@ void Layer<3>::check(const Setup& s) {
   check_packing(p);
   check_spheres(p);
   const bool angular = is_angular(p);
-  if (angular && s.load.method == "newton") {
+  for (const auto& [key, method] :
+       {std::pair{"load.rest", s.load.rest}, {"load.method", s.load.method}}) {
+    if (!angular || method != "newton") continue;
     throw std::invalid_argument(
-        "load.method: found \"newton\" with packing.shape = \"superellipsoid\", allowed: "
-        "\"damped\" (the quasi-static solver knows spheres)");
+        fmt::format("{}: found \"newton\" with packing.shape = \"superellipsoid\", allowed: "
+                    "\"damped\" (the quasi-static solver knows spheres)",
+                    key));
   }
   if (s.load.probe_strain > 0) {
     const char* found = angular                 ? "packing.shape = \"superellipsoid\""
@@ -61,6 +64,7 @@ void Layer<3>::check(const Setup& s) {
     check_method("load.probe_strain", "newton", s.material, s.motion, 3);
   }
   if (angular) check_superellipsoid_material(s.material);
+  check_method("load.rest", s.load.rest, s.material, s.motion, 3);
   check_method("load.method", s.load.method, s.material, s.motion, 3);
   const double depth = falls(s) ? p.depth : 2 * p.rows * p.radius;
   const double fall = falls(s) ? std::max(0.0, loose_height(p) - depth) : 0;

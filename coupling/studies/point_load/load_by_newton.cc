@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "coupling/studies/point_load/simulation.h"
 #include "dem/quasistatic/quasistatic.h"
 
@@ -9,22 +12,49 @@ namespace grainfield::dem {
 namespace {
 
 constexpr double kNoTime = 1e-15;  // s
+// The solver is asked for this share of the ratio at which a layer is at rest: time steps go on
+// from its state, and find it at rest too.
+constexpr double kRestShare = 0.1;
+constexpr double kLeastRatio = 1e-12;  // that the solver takes
+
+/// What the solver reached.
+Reached reached_by(const QuasistaticResult& r) {
+  return {r.unbalanced_force_ratio, static_cast<double>(r.steps),
+          static_cast<double>(r.iterations)};
+}
 
 }  // namespace
 
-std::optional<LoadedLayer> load_by_newton(const Snapshot& unloaded, const EngineSettings& settings,
-                                          const LoadSetup& load, const AppliedForce& force,
-                                          const std::vector<std::int64_t>& beside,
-                                          const std::function<bool(double)>& go_on) {
+std::optional<LayerByNewton> rest_by_newton(const Snapshot& near, const EngineSettings& settings,
+                                            const RestSetup& rest,
+                                            const std::function<bool(double)>& go_on) {
+  QuasistaticSettings how;
+  how.unbalanced_force_ratio = std::max(kLeastRatio, kRestShare * rest.unbalanced_force_ratio);
+  how.least_step = 1;  // there is no change to be made in steps
+  how.go_on = go_on;
+  try {
+    QuasistaticResult r = relax(near, settings, near.gravity, {}, how);
+    if (!at_rest(diagnostics_of(r.state, settings), rest)) return std::nullopt;
+    const Reached reached = reached_by(r);
+    return LayerByNewton{std::move(r.state), reached};
+  } catch (const ComputationFailed&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<LayerByNewton> load_by_newton(const Snapshot& unloaded,
+                                            const EngineSettings& settings, const LoadSetup& load,
+                                            const AppliedForce& force,
+                                            const std::vector<std::int64_t>& beside,
+                                            const std::function<bool(double)>& go_on) {
   QuasistaticSettings how;
   how.unbalanced_force_ratio = load.unbalanced_force_ratio;
   how.go_on = go_on;
   try {
     QuasistaticResult r = relax(unloaded, settings, unloaded.gravity, force, how, beside);
     r.state.attributes["state"] = "loaded";
-    return LoadedLayer{std::move(r.state),
-                       {r.unbalanced_force_ratio, static_cast<double>(r.steps),
-                        static_cast<double>(r.iterations)}};
+    const Reached reached = reached_by(r);
+    return LayerByNewton{std::move(r.state), reached};
   } catch (const RelaxationStopped&) {
     return std::nullopt;
   } catch (const ComputationFailed& failure) {

@@ -10,6 +10,7 @@
 #include "coupling/studies/point_load/layer_figures.h"
 #include "coupling/studies/point_load/layer_probe.h"
 #include "coupling/studies/point_load/load_by_newton.h"
+#include "dem/quasistatic/quasistatic.h"
 #include "dem/run/phased_run.h"
 #include "dem/snapshot/images.h"
 
@@ -69,6 +70,13 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
     Base::enter(Layer<D>::falls(setup_) ? Is::build : Is::rest);
   }
 
+  Progress progress() const override {
+    Progress p = Base::progress();
+    p.steps += steps_before_;
+    p.simulated_time += time_before();
+    return p;
+  }
+
   RunResult result() const override {
     RunResult out;
     if (!unloaded_ || !loaded_) return out;
@@ -76,12 +84,15 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
     auto& f = out.figures;
     add_engine_figures(*engine_,
                        by_newton() ? diagnostics_of(*loaded_, settings_) : engine_->measure(), f);
+    f["dem.steps"] += static_cast<double>(steps_before_);
     const std::vector<double> sides = Layer<D>::sides(setup_);
     add_layer_figures(*unloaded_, *loaded_, Layer<D>::height(*unloaded_, setup_), sides.front(),
                       D == 2 ? sides[0] : sides[0] * sides[1], f);
     f["load.force"] = force_of_load(setup_);
     Layer<D>::add_figures(setup_, *loaded_, f);
     add_reached("load", reached_, f);
+    if (setup_.load.rest == "newton") f["rest.by_newton"] = finish_ == Finish::done ? 1 : 0;
+    add_reached("rest", rested_, f);
     add_contact_changes(*unloaded_, *loaded_, f);
     return out;
   }
@@ -96,6 +107,7 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
   }
 
   bool acts_at_once() override {
+    if (phases_.now() == Is::rest && finish_ == Finish::due) return finish_rest(), true;
     if (phases_.now() == Is::probe) return probe(), true;
     if (phases_.now() == Is::load && by_newton()) return solve(), true;
     return false;
@@ -116,9 +128,11 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
         }
         return;
       case Is::rest:
-        if (!has_come_to_rest("before the load")) return;
-        unloaded_ = take_snapshot("unloaded");
-        return probes(setup_) ? Base::enter(Is::probe) : begin_load();
+        if (has_come_to_rest("before the load")) return leave_rest(take_snapshot("unloaded"));
+        if (finish_ == Finish::later && energy_at_rest(engine_->measure(), setup_.rest)) {
+          finish_ = Finish::due;
+        }
+        return;
       case Is::hold:
         if (!has_come_to_rest("after the load")) return;
         loaded_ = take_snapshot("loaded");
@@ -133,6 +147,29 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
   }
   bool has_come_to_rest(const char* when) const {
     return Base::has_come_to_rest(engine_->measure(), when, Layer<D>::kLowerLoad);
+  }
+
+  void leave_rest(Snapshot state) {
+    unloaded_ = std::move(state);
+    probes(setup_) ? Base::enter(Is::probe) : begin_load();
+  }
+
+  // What damped dynamics lack of rest, by Newton's method; where it fails they go on. Told to stop
+  // it leaves the run as it was.
+  void finish_rest() {
+    std::optional<LayerByNewton> done;
+    try {
+      done = rest_by_newton(take_snapshot("unloaded"), settings_, setup_.rest,
+                            this->watch_of("rest by Newton's method"));
+    } catch (const RelaxationStopped&) {
+      return;
+    }
+    finish_ = done ? Finish::done : Finish::failed;
+    if (!done) return;
+    rested_ = done->reached;
+    steps_before_ = engine_->steps();
+    engine_ = make_engine(settings_, done->state);
+    leave_rest(std::move(done->state));
   }
 
   // The rest before the probes, one more probe, or the load. Told to stop it leaves the run as it
@@ -169,8 +206,8 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
   // The load by Newton's method. Told to stop it leaves the run as it was.
   void solve() {
     const SharedForce load = load_on(*unloaded_);
-    std::optional<LoadedLayer> done = load_by_newton(*unloaded_, settings_, setup_.load, load.force,
-                                                     load.beside, this->watch_of("load"));
+    std::optional<LayerByNewton> done = load_by_newton(
+        *unloaded_, settings_, setup_.load, load.force, load.beside, this->watch_of("load"));
     if (!done) return;
     reached_ = done->reached;
     loaded_ = std::move(done->state);
@@ -225,12 +262,18 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
   }
 
   Snapshot take_snapshot(const char* state) const {
-    return named_snapshot(*engine_, state, this->seed_,
-                          {{"packing", setup_.packing.kind}, {"floor", setup_.packing.floor}});
+    Snapshot s =
+        named_snapshot(*engine_, state, this->seed_,
+                       {{"packing", setup_.packing.kind}, {"floor", setup_.packing.floor}});
+    s.time += time_before();
+    return s;
   }
+  double time_before() const { return static_cast<double>(steps_before_) * settings_.time_step; }
 
   std::string phase_name() const override {
-    return phases_.now() == Is::build ? layer_.phase() : Base::phase_name();
+    if (phases_.now() == Is::build) return layer_.phase();
+    const bool alone = phases_.now() == Is::rest && finish_ == Finish::failed;
+    return Base::phase_name() + (alone ? " (Newton's method failed)" : "");
   }
   double share(const Diagnostics& d) const override {
     switch (phases_.now()) {
@@ -257,6 +300,11 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
       archive.require(probed_ >= 0 && probed_ <= LayerProber::count());
     }
     archive(reached_);
+    archive(finish_);
+    archive.require(finish_ <= Finish::failed);
+    archive(rested_);
+    archive(steps_before_);
+    archive.require(steps_before_ >= 0);
     Base::visit_engine(archive);
     archive.snapshot(unloaded_, "unloaded");
     archive.snapshot(loaded_, "loaded");
@@ -268,6 +316,11 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
   std::optional<LayerProber> prober_;  // settled; made anew after a resume
   int probed_ = 0;                     // probes that are done
   Reached reached_;                    // by Newton's method
+  // The rest by Newton's method: `never` without it, `due` when the energy is at rest.
+  enum class Finish : int { never, later, due, done, failed };
+  Finish finish_ = setup_.load.rest == "newton" ? Finish::later : Finish::never;
+  Reached rested_;         // by Newton's method
+  long steps_before_ = 0;  // of the engine that Newton's method took over from
 };
 
 }  // namespace

@@ -17,6 +17,9 @@
 namespace grainfield::dem {
 
 struct LoadSetup {
+  /// How the layer comes to rest before: damped: slow damped dynamics | newton: these until its
+  /// energy is at rest, then the quasi-static solver.
+  std::string rest = "damped";
   double force = 300;             ///< N, downwards on one grain
   std::string method = "damped";  ///< damped: slow damped dynamics | newton: quasi-static solver
   double unbalanced_force_ratio = 1e-8;  ///< newton: to be reached
@@ -28,8 +31,8 @@ struct LoadSetup {
   double probe_strain = 0;  ///< 3D: of each probe before the load (layer_probe.h); 0: none
 
   auto members() const {
-    return std::tie(force, method, unbalanced_force_ratio, ramp_time, position, weights, position_y,
-                    radius, probe_strain);
+    return std::tie(rest, force, method, unbalanced_force_ratio, ramp_time, position, weights,
+                    position_y, radius, probe_strain);
   }
 };
 

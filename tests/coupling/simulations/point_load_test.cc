@@ -174,6 +174,91 @@ TEST(PointLoad, NewtonAgreesWithDampedDynamics) {
   }
 }
 
+// Newton's method goes on where damped dynamics have brought the energy to rest, and ends where
+// they would; on any threads, and stopped on the way, with the same bits.
+TEST(PointLoad, ComesToRestByNewtonsMethod) {
+  for (const bool disks : {true, false}) {
+    PointLoadSetup s = disks ? small("layered") : pentagons();
+    s.packing.width = 0.05;
+    s.rest.unbalanced_force_ratio = 1e-7;
+    s.rest.kinetic_to_elastic_energy = 1e-6;
+    s.load.force = 0.2;
+    const auto damped = make_point_load_run(s, 5, 1);
+    finish(*damped);
+    s.load.rest = "newton";
+    const auto newton = make_point_load_run(s, 5, 1), other = make_point_load_run(s, 5, 2);
+    finish(*newton);
+    finish(*other);
+    const RunResult a = damped->result(), b = newton->result();
+    ASSERT_EQ(b.figures.at("rest.by_newton"), 1) << disks;
+    EXPECT_EQ(a.figures.count("rest.by_newton"), 0u);
+    EXPECT_EQ(other->result().figures, b.figures);
+    for (std::size_t k : {0u, 1u}) {
+      EXPECT_TRUE(same(other->result().snapshots[k].second, b.snapshots[k].second)) << k;
+      expect_balanced(b.snapshots[k].second, 1e-7);
+    }
+    EXPECT_LE(b.figures.at("rest.unbalanced_force_ratio"), 1e-8);
+    EXPECT_GE(b.figures.at("rest.iterations"), 1);
+    EXPECT_LT(b.figures.at("dem.steps"), a.figures.at("dem.steps"));
+    EXPECT_GT(b.snapshots[1].second.time, b.snapshots[0].second.time);
+    EXPECT_NEAR(b.figures.at("base.weight_ratio"), 1, 1e-6);
+    EXPECT_NEAR(b.figures.at("base.response_over_load"), 1, 1e-3);
+    const ContactChanges apart = compare_contacts(a.snapshots[0].second, b.snapshots[0].second);
+    EXPECT_LT(apart.max_displacement_over_radius, 1e-3);
+
+    const auto stopped = make_point_load_run(s, 5, 1);
+    int asked = 0;
+    stopped->set_watch([&asked](const Progress& p) {
+      asked += p.phase == "rest by Newton's method" ? 1 : 0;
+      return p.phase != "rest by Newton's method";
+    });
+    for (int k = 0; k < 10000 && asked < 2; ++k) stopped->advance(1000);
+    ASSERT_EQ(asked, 2);
+    const std::string file = (std::filesystem::temp_directory_path() /
+                              ("grainfield_rest_" + std::to_string(getpid()) + ".h5"))
+                                 .string();
+    stopped->save(file);
+    const auto resumed = make_point_load_run(s, 5, 2);
+    resumed->restore(file);
+    for (int k = 0; k < 3; ++k) {  // and again while the load grows
+      resumed->advance(150);
+      resumed->save(file);
+      resumed->restore(file);
+    }
+    std::filesystem::remove(file);
+    finish(*resumed);
+    EXPECT_EQ(resumed->result().figures, b.figures);
+    for (std::size_t k : {0u, 1u}) {
+      EXPECT_TRUE(same(resumed->result().snapshots[k].second, b.snapshots[k].second)) << k;
+    }
+  }
+}
+
+// Tried while grains still fall it fails, and damped dynamics end as without it.
+TEST(PointLoad, RestsByDampedDynamicsWhereNewtonsMethodFails) {
+  PointLoadSetup s = small("layered");
+  s.rest.kinetic_to_elastic_energy = 0.1;
+  s.load.force = 0.2;
+  const auto damped = make_point_load_run(s, 5, 1);
+  finish(*damped);
+  s.load.rest = "newton";
+  const auto newton = make_point_load_run(s, 5, 1);
+  std::string phases;
+  while (!newton->done()) {
+    newton->advance(200);
+    phases += newton->progress().phase + ";";
+  }
+  const RunResult a = damped->result();
+  RunResult b = newton->result();
+  EXPECT_THAT(phases, testing::HasSubstr("rest (Newton's method failed);"));
+  EXPECT_EQ(b.figures.at("rest.by_newton"), 0);
+  b.figures.erase("rest.by_newton");
+  EXPECT_EQ(a.figures, b.figures);
+  for (std::size_t k : {0u, 1u}) {
+    EXPECT_TRUE(same(a.snapshots[k].second, b.snapshots[k].second)) << k;
+  }
+}
+
 std::string refusal(const PointLoadSetup& s) {
   return refusal_of([&] { make_point_load_run(s, 1, 1); });
 }
@@ -197,6 +282,10 @@ TEST(PointLoad, RefusesWhatCannotBe) {
   s = pentagons();
   s.packing.side = 0;
   EXPECT_THAT(refusal(s), testing::HasSubstr("packing.side: found 0, allowed: above 0"));
+  s = small("layered");
+  s.load.rest = "newton";
+  s.motion.energy_balance = true;
+  EXPECT_THAT(refusal(s), testing::HasSubstr("load.rest: found \"newton\" with motion.energy"));
   s = small("triangular");
   s.material.gravity = 0;
   EXPECT_THAT(refusal(s), testing::HasSubstr("material.gravity"));

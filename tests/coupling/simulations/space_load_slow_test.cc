@@ -148,6 +148,27 @@ TEST(SpaceLoad, BothMethodsAgree) {
   }
 }
 
+// Finished by Newton's method the rest is that of damped dynamics, of a large packing too.
+TEST(SpaceLoad, ComesToRestByNewtonsMethod) {
+  for (const double width : {0.06, 0.12}) {
+    PointLoadSetup s = spheres("random");
+    s.packing.width = width;
+    s.motion.local_damping = 0.2;
+    s.rest = {1e-7, 1e-5, 10, 20};
+    s.load.weights = 0.1;
+    const RunResult damped = result_of(s);
+    s.load.rest = "newton";
+    const RunResult newton = result_of(s), again = result_of(s, 3, 2);
+    ASSERT_EQ(newton.figures.at("rest.by_newton"), 1) << width;
+    EXPECT_EQ(newton.figures, again.figures) << "two threads";
+    EXPECT_LT(newton.figures.at("dem.steps"), 0.9 * damped.figures.at("dem.steps"));
+    for (const auto& [name, state] : newton.snapshots) expect_balanced(state, 1e-7, name);
+    EXPECT_NEAR(newton.figures.at("base.weight_ratio"), 1, 1e-6);
+    EXPECT_NEAR(newton.figures.at("base.response_over_load"), 1, 1e-2);
+    EXPECT_NEAR(newton.figures.at("dem.contacts") / damped.figures.at("dem.contacts"), 1, 5e-3);
+  }
+}
+
 // The grains seen from above within the radius share the force.
 TEST(SpaceLoad, ADiskOfGrainsSharesTheForce) {
   PointLoadSetup s = spheres("random");
@@ -267,6 +288,9 @@ TEST(SpaceLoad, RefusesWhatCannotBe) {
   s.material.law = "hertz_elliptic";
   EXPECT_THAT(refusal(s),
               HasSubstr("material.law: found hertz_elliptic, allowed for quasi-static"));
+  s = superellipsoids();
+  s.load.rest = "newton";
+  EXPECT_THAT(refusal(s), HasSubstr("load.rest: found \"newton\" with packing.shape"));
   s = superellipsoids();
   s.load.method = "newton";
   EXPECT_THAT(refusal(s), HasSubstr("load.method: found \"newton\" with packing.shape"));
