@@ -96,7 +96,8 @@ class ContactNetwork {
     std::array<int, 3> image{0, 0, 0};
     Vec3 force{0, 0, 0};  ///< on i, N
   };
-  /// The derivative of the contacts' forces at the committed state times z, ascending (i, j, image).
+  /// The derivative of the contacts' forces at the committed state times z, ascending (i, j,
+  /// image).
   virtual std::vector<ForceChange> force_changes(const Vector& z) const = 0;
 
   /// The committed state as a snapshot: `like` with new positions, velocities 0 and contacts.

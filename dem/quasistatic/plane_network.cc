@@ -81,7 +81,8 @@ double PlaneNetwork::displacement(int grain, int axis, const Vector& z) const {
   if (strains() && axis < 2) {
     const auto& start = origin_[grain];
     const auto& moved = committed_[grain];
-    before += gradient_(axis, 0) * (start[0] + moved[0]) + gradient_(axis, 1) * (start[1] + moved[1]);
+    before +=
+        gradient_(axis, 0) * (start[0] + moved[0]) + gradient_(axis, 1) * (start[1] + moved[1]);
   }
   return s.unknown < 0 ? before : before + (axis < 2 ? s.radius : 1.0) * z[s.unknown + axis];
 }

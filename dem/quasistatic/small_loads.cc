@@ -92,7 +92,8 @@ SmallLoads::Vector SmallLoads::solve(const Vector& rhs, SmallResponse& out) {
 
 SmallResponse SmallLoads::response(const std::vector<std::int64_t>& ids, const Vec3& force) {
   if (ids.empty() || !force.allFinite() || force.isZero(0))
-    throw std::invalid_argument("small loads: found no load, allowed: a force on one grain or more");
+    throw std::invalid_argument(
+        "small loads: found no load, allowed: a force on one grain or more");
   Vector rhs = Vector::Zero(network_->size());
   std::map<std::int64_t, int> unknown;  // first, by id
   int at = 0;
@@ -113,10 +114,10 @@ SmallResponse SmallLoads::response(const std::vector<std::int64_t>& ids, const V
   SmallResponse out;
   const Vector z = solve(rhs, out);
   if (!(out.left <= kReached)) {
-    throw ComputationFailed(
-        fmt::format("small loads: nothing carries a force on grain {}: after {} solutions {:.2g} of "
-                    "it is out of balance; choose a grain with contacts below",
-                    ids.front(), out.solves, out.left));
+    throw ComputationFailed(fmt::format(
+        "small loads: nothing carries a force on grain {}: after {} solutions {:.2g} of "
+        "it is out of balance; choose a grain with contacts below",
+        ids.front(), out.solves, out.left));
   }
   std::tie(out.moved, out.turned) = motion_of(start_, z);
   out.change = start_;

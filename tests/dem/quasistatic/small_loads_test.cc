@@ -205,8 +205,8 @@ TEST(SmallLoads, OfManySpheresAreSolvedByIteration) {
   p.settings.cell.edges = Vec3(kSide * a, kSide * a, 1).asDiagonal();
   const auto engine = make_engine(p.settings);
   for (int k = 0; k < kSide * kSide * kLayers; ++k) {
-    NewGrain g = sphere(a * (Vec3(k % kSide, k / kSide % kSide, k / kSide / kSide) +
-                             Vec3::Constant(0.5)));
+    NewGrain g =
+        sphere(a * (Vec3(k % kSide, k / kSide % kSide, k / kSide / kSide) + Vec3::Constant(0.5)));
     g.fixed = k < kSide * kSide;
     engine->add(g);
   }
@@ -232,7 +232,9 @@ TEST(SmallLoads, RefuseWhatCarriesNothing) {
     return std::string("none");
   };
   SmallLoads loads(p.rest, p.settings);
-  EXPECT_THAT(complaint([&] { loads.response({123456}, {0, -1, 0}); }),
+  EXPECT_THAT(complaint([&] {
+                loads.response({123456}, {0, -1, 0});
+              }),
               HasSubstr("found a force on grain 123456, allowed: the id of a free grain"));
   EXPECT_THAT(complaint([&] { loads.response({}, {0, -1, 0}); }), HasSubstr("found no load"));
   Snapshot lifted = p.rest;
@@ -245,7 +247,9 @@ TEST(SmallLoads, RefuseWhatCarriesNothing) {
   loose.mass = 1e-30;
   p.rest.grains.push_back(loose);
   SmallLoads with_loose(p.rest, p.settings);
-  EXPECT_THAT(complaint([&] { with_loose.response({loose.id}, {0, -1, 0}); }),
+  EXPECT_THAT(complaint([&] {
+                with_loose.response({loose.id}, {0, -1, 0});
+              }),
               HasSubstr("nothing carries a force on grain"));
 }
 
