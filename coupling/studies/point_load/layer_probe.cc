@@ -31,6 +31,17 @@ double share_within(double a, double b, double low, double high) {
   return std::max(0.0, std::min(b, high) - std::max(a, low)) / (b - a);
 }
 
+// From where to where on the way from a to b, 0 to 1, it is between low and high.
+struct Way {
+  double begin = 0, end = 0;
+};
+Way way_within(double a, double b, double low, double high) {
+  if (a == b) return {0.0, a >= low && a < high ? 1.0 : 0.0};
+  double first = (low - a) / (b - a), last = (high - a) / (b - a);
+  if (first > last) std::swap(first, last);
+  return {std::max(first, 0.0), std::min(last, 1.0)};
+}
+
 // The gradient that moves the layer's ends and its cell. Shear along z is simple shear: the cell
 // stays upright.
 Eigen::Matrix3d imposed_gradient(const std::string& direction, double strain) {
@@ -149,11 +160,16 @@ double LayerProber::place_in_cell(double x) const {
 double LayerProber::share_in(const Part& part, const Contact& c) const {
   const Vec3& first = held_.grains[static_cast<std::size_t>(c.i)].position;
   const Vec3 second = second_place(held_, c);
-  if (!part.all_along_x) {
-    const double middle = place_in_cell(0.5 * (first.x() + second.x()));
-    if (middle < part.left || middle >= part.right) return 0;
+  if (part.all_along_x) return share_within(first[up_], second[up_], part.slab.low, part.slab.high);
+  const Way along = way_within(first[up_], second[up_], part.slab.low, part.slab.high);
+  const double x = place_in_cell(first.x()), to = x + (second.x() - first.x());
+  const double width = held_.cell.periodic[0] ? held_.cell.edges(0, 0) : 0;
+  double out = 0;
+  for (int image = width > 0 ? -1 : 0; image <= (width > 0 ? 1 : 0); ++image) {
+    const Way across = way_within(x + image * width, to + image * width, part.left, part.right);
+    out += std::max(0.0, std::min(along.end, across.end) - std::max(along.begin, across.begin));
   }
-  return share_within(first[up_], second[up_], part.slab.low, part.slab.high);
+  return out;
 }
 
 void LayerProber::fail(const std::string& what, const std::exception& failure) const {
