@@ -89,7 +89,7 @@ class ByPlace {
     count_[k] += 1;
   }
   Eigen::VectorXd mean() const {
-    return (count_.array() > 0).select(sum_.array() / count_.array(), kUnknown);
+    return (count_.array() > 0).select(sum_.cwiseQuotient(count_).array(), kUnknown).matrix();
   }
 
  private:

@@ -29,7 +29,7 @@ std::optional<ProbedSlabs> probe_slabs(const dem::Snapshot& layer, const dem::Ma
                                        const std::function<bool(double)>& go_on) {
   std::vector<dem::Slab> slabs = dem::slabs_of(layer, height, how.slabs);
   std::reverse(slabs.begin(), slabs.end());
-  slabs.insert(slabs.begin(), {slabs.back().low, slabs.front().high});
+  slabs.insert(slabs.begin(), dem::Slab{slabs.back().low, slabs.front().high});
   dem::LayerProber prober(layer, materials, height, how.strain, slabs, how.strips);
   if (!prober.settle(go_on)) return std::nullopt;
   std::vector<dem::StateProbes> parts(prober.parts());

@@ -9,7 +9,6 @@
 #include <functional>
 #include <map>
 
-#include "dem/grains/packing.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/snapshot/contact_changes.h"
 #include "tests/dem/sphere_relaxation_scene.h"
@@ -40,27 +39,30 @@ struct Packing {
   double mean_weight() const { return rest.grains.back().mass * rest.gravity.norm(); }
 };
 
-// Disks of many sizes on a lattice, so that some contacts are open, between walls.
+// Disks of many sizes, dropped between walls.
 const Packing& disks() {
   static const Packing one = [] {
     Packing p;
     p.up = 1;
-    p.settings.law = OverlapAreaLaw{1e7, 0.75};
+    p.settings.law = OverlapAreaLaw{1e5, 0.75};
     p.settings.friction = 3;
-    PackingSetup packing;
-    packing.kind = "triangular";
-    packing.sizes = "mono";
-    packing.jitter = 0.01;
-    packing.columns = 12;
-    packing.rows = 8;
-    Random random(3);
-    EngineSettings e = p.settings;
-    e.time_step = 1e-7;
-    const auto engine = make_engine(e);
-    for (const NewGrain& g : lattice_grains(packing, 1000, random)) engine->add(g);
-    for (const Wall& w : layer_walls(packing, MaterialSetup{})) engine->add_wall(w);
+    p.settings.integrator = IntegratorKind::verlet;
+    p.settings.time_step = 5e-5;
+    const double cell = 2.3 * kRadius;
+    constexpr int kColumns = 12, kRows = 8;
+    const auto engine = make_engine(p.settings);
+    engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 3});
+    engine->add_wall({"left", {0, 0, 0}, {1, 0, 0}, 0});
+    engine->add_wall({"right", {kColumns * cell, 0, 0}, {-1, 0, 0}, 0});
+    Random random(2);
+    for (int k = 0; k < kColumns * kRows; ++k) {
+      const auto at = [&](int n) { return cell * (n + 0.5 + 0.05 * random.uniform(-1, 1)); };
+      NewGrain g = sphere({at(k % kColumns), at(k / kColumns), 0});
+      g.radius = kRadius * random.uniform(0.85, 1.1);
+      engine->add(g);
+    }
+    come_to_rest(*engine, 1e-7);
     p.rest = engine->snapshot();
-    p.rest.gravity = Vec3(0, -kG, 0);
     p.relax_at(1e-12);
     return p;
   }();
@@ -70,7 +72,7 @@ const Packing& disks() {
 const Packing& spheres() {
   static const Packing one = [] {
     Packing p;
-    p.settings = settings_of(HertzLaw{5e6, 0.3, 0.3}, 3);
+    p.settings = settings_of(LinearLaw{1e4, 5e3, 200, 100}, 3);
     p.rest = settled(p.settings, true, 4, 4)->snapshot();
     p.settings.cell = p.rest.cell;
     p.relax_at(1e-12);
@@ -100,7 +102,7 @@ Forces forces_of(const Snapshot& s) {
 void expect_as_newton(const Packing& p) {
   ASSERT_EQ(std::ranges::count_if(p.rest.contacts, [](const Contact& c) { return c.sliding; }), 0);
   const std::int64_t id = p.highest();
-  const double size = 2e-3 * p.mean_weight();
+  const double size = 1e-4 * p.mean_weight();
   const Vec3 force = -size * Vec3::Unit(p.up) + 0.3 * size * Vec3::Unit(0);
   SmallLoads loads(p.rest, p.settings);
   const SmallResponse linear = loads.response({id}, force);
