@@ -34,7 +34,7 @@ namespace {
 
 // Balance to which layers are brought before anything is measured: a small load on a deep layer
 // changes contact forces by little.
-constexpr double kRest = 1e-10;
+constexpr double kRest = 1e-9;
 constexpr double kEvidence = 0.1;  // "right to x %" is told below this
 
 dem::Materials materials_of(const dem::MaterialSetup& m) {
