@@ -72,7 +72,7 @@ const Packing& disks() {
 const Packing& spheres() {
   static const Packing one = [] {
     Packing p;
-    p.settings = settings_of(LinearLaw{1e4, 5e3, 200, 100}, 3);
+    p.settings = settings_of(LinearLaw{500, 250, 200, 100}, 3);
     p.rest = settled(p.settings, true, 4, 4)->snapshot();
     p.settings.cell = p.rest.cell;
     p.relax_at(1e-12);
