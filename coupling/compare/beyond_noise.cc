@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -54,8 +55,11 @@ BeyondNoise misfit_beyond_noise(const Eigen::MatrixXd& samples, const Eigen::Vec
   const auto count = static_cast<double>(n);
   out.error = std::sqrt((count - 1) / count * (without - without.mean()).square().sum());
   out.degrees = static_cast<int>(n) - 1;
+  // The jackknife knows little of the scatter where the misfit is noise: that of a single mode,
+  // which no noise of this size exceeds, is added.
+  const double scatter = std::hypot(out.error, std::numbers::sqrt2 * out.noise);
   out.bound =
-      out.squared + out.error * boost::math::quantile(boost::math::students_t(count - 1), kSide);
+      out.squared + scatter * boost::math::quantile(boost::math::students_t(count - 1), kSide);
   return out;
 }
 

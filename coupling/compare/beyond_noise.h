@@ -13,7 +13,7 @@ struct BeyondNoise {
   double error = kNan;  ///< its standard error, by the jackknife over the realizations
   double noise = kNan;  ///< what was taken away
   int degrees = 0;      ///< of freedom of the error; 0: it is unknown
-  double bound = kNan;  ///< upper end of 95 % (one-sided, Student's t) of `squared`
+  double bound = kNan;  ///< upper end of 95 % (one-sided, Student's t) of `squared`, wide
 
   /// The model is right to this share: the root of the bound, 0 where that is negative.
   double right_to() const;

@@ -137,7 +137,7 @@ std::string moduli_table(const std::vector<SlabModuli>& slabs, double depth, boo
                                        : std::vector<int>{C::e_v, C::e_h, C::nu_h, C::nu_v, C::g_v};
   std::string out, errors;
   const auto row = [&](double at, const std::array<double, C::count>& values) {
-    std::string text = fmt::format("{:.9g}", at);
+    std::string text = fmt::format("{:.15g}", at);
     for (const int c : columns) text += fmt::format(",{:.9g}", values[static_cast<std::size_t>(c)]);
     return text + "\n";
   };

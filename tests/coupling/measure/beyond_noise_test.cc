@@ -39,13 +39,13 @@ Trials trials(double off, int realizations) {
 TEST(BeyondNoise, HasNoBias) {
   for (const double off : {0.0, 0.05, 0.2}) {
     const Trials t = trials(off, 8);
-    EXPECT_NEAR(t.mean, off * off, 2e-4) << off;
-    EXPECT_GT(t.plain, off * off + 1e-3) << off;
+    EXPECT_NEAR(t.mean, off * off, 1e-3) << off;
+    EXPECT_GT(t.plain, off * off + 1.5e-3) << off;
   }
 }
 
 TEST(BeyondNoise, IsBounded) {
-  for (const double off : {0.05, 0.2}) EXPECT_GT(trials(off, 8).held, 0.9) << off;
+  for (const double off : {0.02, 0.05, 0.2}) EXPECT_GT(trials(off, 8).held, 0.93) << off;
 }
 
 TEST(BeyondNoise, LeavesOutWhatIsNotKnown) {
