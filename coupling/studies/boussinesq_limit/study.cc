@@ -106,7 +106,10 @@ class LimitAnalysis {
   std::string write_table(const std::string& name, const std::vector<SlabModuli>& slabs) {
     const std::string text = moduli_table(slabs, depth_, false);
     out_.texts.emplace_back(name, text);
-    const auto path = std::filesystem::path(out_.realizations.front()).parent_path() / name;
+    // Beside the results, where the run leaves it in the end; not in the folder of checkpoints.
+    auto folder = std::filesystem::path(out_.realizations.front()).parent_path();
+    if (folder.filename() == "checkpoint") folder = folder.parent_path();
+    const auto path = folder / name;
     std::ofstream file(path);
     if (!(file << text) || !file.flush())
       throw dem::StorageFailed(fmt::format("{}: cannot be written", path.string()));
