@@ -105,8 +105,7 @@ class LimitAnalysis {
 
   std::string write_table(const std::string& name, const std::vector<SlabModuli>& slabs) {
     const std::string text = moduli_table(slabs, depth_, false);
-    out_.texts.emplace_back(name, text);
-    // Beside the results, where the run leaves it in the end; not in the folder of checkpoints.
+    // Beside the results: models read it while results are not written yet, and it stays there.
     auto folder = std::filesystem::path(out_.realizations.front()).parent_path();
     if (folder.filename() == "checkpoint") folder = folder.parent_path();
     const auto path = folder / name;
