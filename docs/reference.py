@@ -17,7 +17,7 @@ CASES = DOCS.parent / "cases"
 SECTIONS = [
     ("Layers under a point load", "Changes of contact forces under a load, red more and blue less",
      "images/load-change.png",
-     ["point-load", "elastic-layer", "elastic-half-space", "orthotropic-layer", "osl-layer"]),
+     ["point-load", "boussinesq-limit", "elastic-layer", "elastic-half-space", "orthotropic-layer", "osl-layer"]),
     ("Sand piles", "Base pressure of piles from a line", "reproduction/results/pile-line-source.base-pressure.svg",
      ["pile-point", "pile-line", "pile-elliptic", "pile-asymmetric", "pile-dip", "pile-gravity", "pile-rest"]),
     ("Fields and constants of piles", "Volume fraction of the mean pile",

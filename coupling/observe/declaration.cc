@@ -44,9 +44,11 @@ StudyResult analysed(const Case& value, const std::vector<std::string>& files, i
     add_samples(d.observed, one, figures);
   }
   add_figures(out.summary, figures);
-  if (d.compared) {
-    const Observations observed = d.compared(value, files, threads);
-    const std::vector<SeenModel> models = see_models(observed, value.models);
+  if (d.compared || d.predicted) {
+    std::vector<ModelChoice> choices = value.models;
+    const Observations observed =
+        d.predicted ? d.predicted(out, choices, threads) : d.compared(value, files, threads);
+    const std::vector<SeenModel> models = see_models(observed, choices);
     out.comparison = compared(observed, models);
     add_compared(out.summary, observed, out.comparison, 0);
     add_models(out, observed, models);

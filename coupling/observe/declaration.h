@@ -19,6 +19,9 @@ struct Declaration {
   /// What is compared with compare.models, from the files of the realizations.
   std::function<Observations(const Case&, const std::vector<std::string>&, int threads)> compared =
       {};
+  /// In its place: may first add models that follow from the grains, and figures and files.
+  std::function<Observations(StudyResult&, std::vector<ModelChoice>& models, int threads)>
+      predicted = {};
   /// Figures of the run, from what precedes.
   std::vector<RunFigure<StudyResult>> found = {};
   /// Further figures, files, warnings, and charts of a sweep.

@@ -5,6 +5,7 @@
 // clang-format off
 #define GRAINFIELD_STUDIES(STUDY) \
   STUDY(point_load) \
+  STUDY(boussinesq_limit) \
   STUDY(pile) \
   STUDY(pile_fields) \
   STUDY(cone) \

@@ -14,10 +14,6 @@ std::unique_ptr<ContactNetwork> make_contact_network(const Snapshot& start,
   return std::make_unique<SphereNetwork>(start, materials);
 }
 
-void ContactNetwork::strain(const Eigen::Matrix3d& /*gradient*/) {
-  throw std::logic_error("a contact network in the plane is not strained");
-}
-
 std::unique_ptr<ContactNetwork> ContactNetwork::part(const std::vector<int>& /*free*/) const {
   throw std::logic_error("a contact network in the plane has no parts");
 }

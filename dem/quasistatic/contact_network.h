@@ -8,6 +8,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -50,6 +51,9 @@ class ContactNetwork {
   /// residual r of each grain: that keeps loose grains in place and vanishes with the residual, so
   /// that Newton's convergence stays quadratic.
   virtual void tangent(const Vector& z, const Vector& r, const Vector& drag, Matrix& matrix) = 0;
+  /// Share of that stiffness, which holds grains that roll or slide freely: on the diagonal of the
+  /// derivative, not in the residual. Well below the softest mode of a packing of 1e4 grains, 1e-4.
+  static constexpr double kFloor = 1e-6;
   /// A stiffness of the law times radius over scale, per unknown: unit of a drag on z.
   virtual Vector drag_unit() const = 0;
 
@@ -61,10 +65,10 @@ class ContactNetwork {
 
   /// From the committed state to the next one everything moves by gradient * x before z is added:
   /// free and fixed grains and the edges of the cell, which contacts between grains feel. Planes
-  /// stay. Throws std::logic_error in the plane.
-  virtual void strain(const Eigen::Matrix3d& gradient);
+  /// stay.
+  void strain(const Eigen::Matrix3d& gradient) { gradient_ = gradient; }
   /// Whether a strain waits for its commit.
-  virtual bool strains() const { return false; }
+  bool strains() const { return !gradient_.isZero(0); }
 
   /// A copy, with load, scale, committed state and the strain that waits, in which only the free
   /// grains with these numbers, ascending, are free. Throws std::logic_error in the plane.
@@ -85,6 +89,16 @@ class ContactNetwork {
   /// Mean size of the resultants in a residual, and of the moments over the radii.
   double mean_resultant(const Vector& r) const;
   double mean_moment(const Vector& r) const;
+
+  /// A contact of the committed state, and what a small motion changes its force by.
+  struct ForceChange {
+    std::int64_t i = 0, j = 0;  ///< as Contact
+    std::array<int, 3> image{0, 0, 0};
+    Vec3 force{0, 0, 0};  ///< on i, N
+  };
+  /// The derivative of the contacts' forces at the committed state times z, ascending (i, j,
+  /// image).
+  virtual std::vector<ForceChange> force_changes(const Vector& z) const = 0;
 
   /// The committed state as a snapshot: `like` with new positions, velocities 0 and contacts.
   virtual Snapshot snapshot(const Snapshot& like) = 0;
@@ -107,6 +121,8 @@ class ContactNetwork {
   int dim_ = 2;
   int free_ = 0;
   double scale_ = 1;
+  /// What the next commit strains everything by: grains, those that are fixed too, and the cell.
+  Eigen::Matrix3d gradient_ = Eigen::Matrix3d::Zero();
 };
 
 /// Committed state: the start's positions and springs. `start` must have been checked. Throws

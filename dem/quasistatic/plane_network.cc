@@ -17,9 +17,6 @@ namespace {
 // Gap up to which grains that do not touch are watched, as a share of the mean radius. The list is
 // made anew when a grain has moved by half of it.
 constexpr double kSkinShare = 0.2;
-// Stiffness, as a share of a contact's, that holds grains which roll or slide freely in the matrix
-// (not in the residual). Well below the softest mode of a packing of 1e4 grains, 1e-4.
-constexpr double kFloor = 1e-6;
 
 }  // namespace
 
@@ -80,7 +77,13 @@ void PlaneNetwork::set_load(const Vec3& gravity, const std::vector<Load>& loads)
 
 double PlaneNetwork::displacement(int grain, int axis, const Vector& z) const {
   const Shape& s = shapes_[grain];
-  const double before = committed_[grain][axis];
+  double before = committed_[grain][axis];
+  if (strains() && axis < 2) {
+    const auto& start = origin_[grain];
+    const auto& moved = committed_[grain];
+    before +=
+        gradient_(axis, 0) * (start[0] + moved[0]) + gradient_(axis, 1) * (start[1] + moved[1]);
+  }
   return s.unknown < 0 ? before : before + (axis < 2 ? s.radius : 1.0) * z[s.unknown + axis];
 }
 
@@ -179,6 +182,28 @@ void PlaneNetwork::tangent(const Vector& z, const Vector& r, const Vector& drag,
   matrix.setFromTriplets(triplets_.begin(), triplets_.end());
 }
 
+std::vector<ContactNetwork::ForceChange> PlaneNetwork::force_changes(const Vector& z) const {
+  const Vector zero = Vector::Zero(size());
+  std::vector<ForceChange> out;
+  for (const Pair& pair : pairs_) {
+    const int ui = shapes_[pair.i].unknown, uj = pair.j < 0 ? -1 : shapes_[pair.j].unknown;
+    Slopes d;
+    if ((ui < 0 && uj < 0) || !slopes(pair, place(pair, zero), d)) continue;
+    Eigen::Vector4d moved = Eigen::Vector4d::Zero();
+    if (ui >= 0) {
+      moved.head<2>() -= shapes_[pair.i].radius * z.segment<2>(ui);
+      moved[2] = z[ui + 2];
+    }
+    if (uj >= 0) {
+      moved.head<2>() += shapes_[pair.j].radius * z.segment<2>(uj);
+      moved[3] = z[uj + 2];
+    }
+    const Eigen::Vector2d force = d.topRows<2>() * moved;
+    out.push_back({pair.i, pair.j, {0, 0, 0}, Vec3(force.x(), force.y(), 0)});
+  }
+  return out;
+}
+
 PlaneNetwork::Vector PlaneNetwork::drag_unit() const {
   Vector unit(size());
   for (const Shape& s : shapes_) {
@@ -208,6 +233,7 @@ void PlaneNetwork::commit(const Vector& z) {
     committed_[k] = {displacement(grain, 0, z), displacement(grain, 1, z),
                      displacement(grain, 2, z)};
   }
+  gradient_.setZero();
 }
 
 void PlaneNetwork::ensure_candidates(const Vector& z) {
@@ -287,6 +313,7 @@ void PlaneNetwork::take_back() {
   pairs_ = kept_.pairs;
   committed_ = kept_.committed;
   searched_ = kept_.searched;
+  gradient_.setZero();
 }
 
 Snapshot PlaneNetwork::snapshot(const Snapshot& like) {
@@ -295,9 +322,9 @@ Snapshot PlaneNetwork::snapshot(const Snapshot& like) {
     Grain& g = s.grains[k];
     g.velocity = Vec3(0, 0, 0);
     g.spin = 0;
-    if (g.fixed) continue;
     g.position.x() = origin_[k][0] + committed_[k][0];
     g.position.y() = origin_[k][1] + committed_[k][1];
+    if (g.fixed) continue;
     g.angle = origin_[k][2] + committed_[k][2];
   }
   s.contacts.clear();

@@ -35,6 +35,7 @@ class PlaneNetwork final : public ContactNetwork {
   void commit(const Vector& z) override;
   void keep() override { kept_ = {pairs_, committed_, searched_}; }
   void take_back() override;
+  std::vector<ForceChange> force_changes(const Vector& z) const override;
   Snapshot snapshot(const Snapshot& like) override;
 
  private:

@@ -51,11 +51,11 @@ QuasistaticResult relax(const Snapshot& start, const Materials& materials, const
                         const AppliedForce& force, const QuasistaticSettings& settings,
                         const std::vector<std::int64_t>& beside = {});
 
-/// The packing `start`, in space, under its own gravity and force, after a small homogeneous
+/// The packing `start`, under its own gravity and force, after a small homogeneous
 /// strain: everything moves by gradient * x (x in the packing's axes), then the free grains relax,
 /// while fixed grains keep the place and the orientation that the strain gave them and the edges of
 /// the cell theirs. state.cell is the strained one. Throws as relax(), and std::invalid_argument
-/// for a packing in the plane, a free grain at a wall, or a gradient that is not small (0.01).
+/// for a free grain at a wall, or a gradient that is not small (0.01).
 QuasistaticResult strain(const Snapshot& start, const Materials& materials,
                          const Eigen::Matrix3d& gradient, const QuasistaticSettings& settings);
 

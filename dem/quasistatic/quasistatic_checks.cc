@@ -90,9 +90,6 @@ void check_start(const Snapshot& s) {
 
 void check_strained(const Snapshot& start) {
   check_start(start);
-  if (start.dim != 3) {
-    throw std::invalid_argument("quasi-static strain: found a packing in the plane, allowed: 3D");
-  }
   for (const Contact& c : start.contacts) {
     if (c.j >= 0 || start.grains[static_cast<std::size_t>(c.i)].fixed) continue;
     throw std::invalid_argument(fmt::format(

@@ -17,9 +17,6 @@ namespace {
 // Gap up to which spheres that do not touch are watched, as a share of the mean radius. The list is
 // made anew when one has moved by half of it.
 constexpr double kSkinShare = 0.05;
-// Stiffness, as a share of a contact's, that holds spheres which roll or slide freely in the matrix
-// (not in the residual). Well below the softest mode of a packing of 1e4 grains, 1e-4.
-constexpr double kFloor = 1e-6;
 // Contacts that do not touch yet have the stiffness of this depth, as a share of the radius.
 constexpr double kLightDepth = 1e-5;
 
@@ -277,6 +274,21 @@ void SphereNetwork::tangent(const Vector& z, const Vector& r, const Vector& drag
     const int length = outer[s.unknown + 1] - outer[s.unknown];
     for (int k = 0; k < 6; ++k) values[place + k * length + k] -= loose + drag[s.unknown + k];
   }
+}
+
+std::vector<ContactNetwork::ForceChange> SphereNetwork::force_changes(const Vector& z) const {
+  const Vector zero = Vector::Zero(size());
+  std::vector<ForceChange> out;
+  for (const Pair& pair : pairs_) {
+    Block block;
+    if (!any_free(pair) || !slopes(pair, zero, block)) continue;
+    Eigen::Matrix<double, 12, 1> moved = Eigen::Matrix<double, 12, 1>::Zero();
+    const int ui = spheres_[pair.i].unknown, uj = pair.j < 0 ? -1 : spheres_[pair.j].unknown;
+    if (ui >= 0) moved.head<6>() = z.segment<6>(ui);
+    if (uj >= 0) moved.tail<6>() = z.segment<6>(uj);
+    out.push_back({pair.i, pair.j, pair.image, scale_ * block.slopes.topRows<3>() * moved});
+  }
+  return out;
 }
 
 ContactNetwork::Vector SphereNetwork::drag_unit() const {

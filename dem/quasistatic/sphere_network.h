@@ -26,9 +26,8 @@ class SphereNetwork final : public ContactNetwork {
   void commit(const Vector& z) override;
   void keep() override { kept_ = {pairs_, committed_, turned_, searched_, cell_}; }
   void take_back() override;
+  std::vector<ForceChange> force_changes(const Vector& z) const override;
   Snapshot snapshot(const Snapshot& like) override;
-  void strain(const Eigen::Matrix3d& gradient) override { gradient_ = gradient; }
-  bool strains() const override { return !gradient_.isZero(0); }
   std::unique_ptr<ContactNetwork> part(const std::vector<int>& free) const override;
   void adopt(const ContactNetwork& part) override;
 
@@ -82,8 +81,6 @@ class SphereNetwork final : public ContactNetwork {
     std::vector<Vec3> searched;
     Cell<3> cell;
   } kept_;
-  /// What the next commit strains everything by: grains, those that are fixed too, and the cell.
-  Eigen::Matrix3d gradient_ = Eigen::Matrix3d::Zero();
   double skin_ = 0;
   std::vector<Block> blocks_;
 };

@@ -43,6 +43,7 @@ const std::map<std::string, std::set<std::string>> kTakenFromOthers{
     {"studies/cone", {"studies/pile", "studies/sample/simulation"}},
     {"studies/pile_fields", {"studies/pile"}},
     {"studies/implicit_settling", {"studies/lattice_pile"}},
+    {"studies/boussinesq_limit", {"studies/point_load"}},
     {"studies/solvers", {"studies/point_load"}},
     {"studies/wedge", {"studies/point_load"}}};
 

@@ -190,10 +190,6 @@ TEST(SphereStrain, IsToldToStopAndRefusesWhatItDoesNotKnow) {
   EXPECT_THAT(complaint(l.rest, small), HasSubstr("touches wall floor, allowed: free grains"));
   EXPECT_THAT(complaint(l.rest, 0.1 * Eigen::Matrix3d::Identity()),
               HasSubstr("allowed: below 0.01"));
-  Snapshot plane = l.rest;
-  plane.dim = 2;
-  plane.cell = {};
-  EXPECT_THAT(complaint(plane, small), HasSubstr("in the plane, allowed: 3D"));
 }
 
 }  // namespace

@@ -1,0 +1,59 @@
+// The mean response of a settled layer to a small load on many of its surface grains, one place
+// after the other, by linear response (dem/quasistatic/small_loads.h).
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "coupling/averaging/kernel.h"
+#include "coupling/averaging/layer.h"
+#include "coupling/averaging/options.h"
+#include "coupling/base/field.h"
+#include "dem/laws/materials.h"
+#include "dem/snapshot/snapshot.h"
+
+namespace grainfield::coupling {
+
+/// Grains that share a load, and the middle of their places seen from above, m.
+struct LoadPlace {
+  std::vector<std::int64_t> grains;
+  double x = 0, y = 0;
+};
+
+/// Places of the surface, evenly spread over the middle `span` of the width (in the plane) or over
+/// the layer, each with `grains` free grains that no higher grain covers and that touch others.
+/// Places that would have the same grains are one.
+std::vector<LoadPlace> load_places(const dem::Snapshot& layer, const LayerFrame& frame,
+                                   std::int64_t places, std::int64_t grains, double span);
+
+/// From the outermost place to its side, m; in space half the width.
+double reach_of(const std::vector<LoadPlace>& places, const LayerFrame& frame, int dim);
+
+/// One width of averaging.
+struct SeenThrough {
+  AverageOptions options;
+  std::shared_ptr<const Kernel> kernel;
+};
+
+struct MeanResponse {
+  /// For each averaging the stress along a line at each depth, and on the base behind them; models'
+  /// frame; in space means over the angle.
+  std::vector<std::vector<Field>> lines;
+  double settlement = 0;  ///< of the loaded grains, m, mean
+  /// By distance from the load, at the places of `lines`: downwards, of the grains of the surface;
+  /// and at depths below it, nan where no grain is within a diameter.
+  Eigen::VectorXd surface, axis;
+  double out_of_balance = 0;  ///< largest share of a load that the base and the sides do not carry
+  double base_share = 0;      ///< that the base carries, mean
+  int places = 0;
+};
+
+/// `depths`: of the lines, m below the surface; `x`: from the load, in space radii from 0. `depth`:
+/// of the models, m. `force`: in all, N. Throws as SmallLoads.
+MeanResponse mean_response(const dem::Snapshot& rest, const dem::Materials& materials,
+                           const LayerFrame& frame, const std::vector<LoadPlace>& places,
+                           double force, const std::vector<double>& depths, double depth,
+                           const Eigen::VectorXd& x, const std::vector<SeenThrough>& through);
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,110 @@
+// Layers of growing depth beside elasticity with their own moduli, from case file to report.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "continuum/moduli_by_depth.h"
+#include "coupling/case/case.h"
+#include "coupling/result/tables.h"
+#include "tests/coupling/program.h"
+
+namespace grainfield::coupling::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Lattices of disks of slightly different sizes: nearly isotropic, and quick to come to rest.
+const char* const kCase = R"(study = "boussinesq-limit"
+[packing]
+kind = "triangular"
+sizes = "mono"
+columns = 48
+rows = 13
+jitter = 0.001
+[material]
+friction = 0.9
+[rest]
+unbalanced_force_ratio = 1e-5
+[load]
+method = "newton"
+force = 3
+[response]
+loads = 8
+slabs = 3
+[average]
+points = 41
+depths = [0.5]
+width_diameters = 1.5
+[ensemble]
+realizations = 3
+)";
+
+double number(const Summary& s, const std::string& key) {
+  EXPECT_EQ(s.count(key), 1U) << key;
+  return s.count(key) > 0 ? std::get<double>(s.at(key)) : 0;
+}
+
+TEST(BoussinesqLimitRun, FromCaseToReport) {
+  const Folder folder;
+  const std::string file = folder.write("limit.toml", kCase);
+  const Output run = program("run " + file + " -o " + (folder / "out"));
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Summary s = read_summary(folder / "out/summary.json");
+  EXPECT_EQ(number(s, "response.places"), 8);
+  EXPECT_LT(number(s, "response.out_of_balance"), 1e-6);
+  EXPECT_GT(number(s, "response.base_over_load"), 0.6);
+  EXPECT_GT(number(s, "response.settlement"), 0);
+  // Moduli of the pressed lattice are below the closed form, as some contacts are open.
+  EXPECT_GT(number(s, "moduli.E"), 0);
+  EXPECT_GT(number(s, "moduli.E_v.standard_error"), 0);
+  EXPECT_LT(number(s, "moduli.residual"), 0.2);
+  // The load of the simulation: about a grain's weight.
+  EXPECT_NEAR(number(s, "linearity.weights"), 1, 0.2);
+  EXPECT_LT(number(s, "linearity.lost"), 0.1);
+  for (const char* model : {"homogeneous_rough", "homogeneous_smooth", "homogeneous_half_space",
+                            "by_depth_rough", "by_depth_smooth", "by_depth_half_space"}) {
+    const std::string key = std::string("limit.") + model;
+    for (const char* region : {".base", ".axis", ".all"}) {
+      for (const char* width : {".w_diameters", ".w_depths"}) {
+        const std::string one = key + region + width;
+        EXPECT_GT(number(s, one + ".noise"), 0);
+        EXPECT_GT(number(s, one + ".squared.standard_error"), 0);
+        EXPECT_GE(number(s, one + ".right_to") * number(s, one + ".right_to"),
+                  number(s, one + ".squared"));
+      }
+    }
+  }
+  const continuum::ModuliByDepth table =
+      continuum::read_moduli_by_depth(folder / "out/moduli_by_depth.csv");
+  EXPECT_NO_THROW(table.require_cover(number(s, "layer.depth")));
+  EXPECT_THAT(read_text(folder / "out/displacements.csv"), HasSubstr("axis"));
+  EXPECT_THAT(read_text(folder / "out/report.html"), HasSubstr("by_depth_rough"));
+
+  // From files, with another load: the same layers, the same moduli.
+  const std::string more = "\n[grains]\nfiles = [\"" + (folder / "out/snapshots.h5") + "\"]\n";
+  const std::string from = folder.write("from.toml", kCase + more);
+  const Output again = program("run " + from + " -o " + (folder / "from") +
+                               " --set response.grains=3 --set response.finite_elements=false");
+  ASSERT_EQ(again.code, 0) << again.err;
+  const Summary t = read_summary(folder / "from/summary.json");
+  EXPECT_DOUBLE_EQ(number(t, "moduli.E"), number(s, "moduli.E"));
+  EXPECT_LT(number(t, "response.settlement"), 0.9 * number(s, "response.settlement"));
+  EXPECT_EQ(t.count("limit.by_depth_rough.base.w_depths.squared"), 0U);
+  EXPECT_EQ(t.count("limit.homogeneous_rough.base.w_depths.squared"), 1U);
+}
+
+TEST(BoussinesqLimitRun, RefusesWhatLinearResponseDoesNotKnow) {
+  const Folder folder;
+  const auto refusal = [&](const std::string& sets) {
+    const Output out = program("check " + folder.write("x.toml", kCase) + " " + sets);
+    EXPECT_EQ(out.code, 2) << out.err;
+    return out.err;
+  };
+  EXPECT_THAT(
+      refusal("--set packing.dim=3 --set packing.kind=random --set packing.shape=superellipsoid"
+              " --set material.law=hertz_elliptic --set load.method=damped"),
+      HasSubstr("packing.shape"));
+  EXPECT_THAT(refusal("--set average.map_columns=9"), HasSubstr("map_columns"));
+}
+
+}  // namespace
+}  // namespace grainfield::coupling::testing
