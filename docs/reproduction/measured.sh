@@ -70,6 +70,14 @@ run fit fit-asymmetric --set "$(set_files pile-asymmetric-line)" --set ensemble.
 measure summary fit-asymmetric fit/summary.json --member line \
   --keys fit.cantelaube_asymmetric_zero.rel_l2 fit.cantelaube_asymmetric_zero.chi2
 
+# Lattice piles: the base, and rows that touch below nearly hard disks.
+run soft-piles liffman-soft-piles
+for angle in 30 32_6 45 50 55; do
+  measure base liffman-soft-piles soft-piles/slope_$angle/profiles.csv --member slope_$angle
+done
+run touching liffman-lattice --set lattice.gap=0 --set 'sweep.values=[60]'
+measure summary liffman-lattice touching/slope_deg_60/summary.json --member touch_60 --keys liffman.
+
 # The layers of runs/roul-layers.txt, by their states or tables, of the runs that are there.
 layers=$here/states/roul-layers
 unpack() { [ -e "$1.h5" ] || { xz -dkc "$layers/$1.h5.xz" > "$1.h5.part" && mv "$1.h5.part" "$1.h5"; }; }
