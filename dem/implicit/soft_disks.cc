@@ -158,6 +158,7 @@ SoftDisks& SoftDisks::operator=(SoftDisks&&) noexcept = default;
 void SoftDisks::step(long steps) { work_->step(steps); }
 bool SoftDisks::try_part() { return work_->try_part(); }
 void SoftDisks::set_acting(const std::vector<char>& acting) { work_->set_acting(acting); }
+void SoftDisks::add(const Body<2>& disk) { work_->add(disk); }
 void SoftDisks::set_velocities(const std::vector<Body<2>>& bodies) {
   work_->set_velocities(bodies);
 }

@@ -87,6 +87,21 @@ void SoftDisks::Work::set_acting(const std::vector<char>& acting) {
   }
 }
 
+void SoftDisks::Work::add(const Body<2>& disk) {
+  if (!pending_.empty()) throw std::logic_error("a disk is added between whole steps");
+  std::vector<Body<2>> all = bodies_;
+  all.push_back(disk);
+  check_soft(scene_, all, settings_);
+  bodies_ = std::move(all);
+  angles_.push_back(0);
+  acting_.push_back(1);
+  if (takes_end()) last_.emplace_back();
+  widest_ = std::max(widest_, disk.radius);
+  // The next step makes a new list.
+  margin_ = -1;
+  listed_.clear();
+}
+
 void SoftDisks::Work::set_velocities(const std::vector<Body<2>>& bodies) {
   if (bodies.size() != bodies_.size()) throw std::invalid_argument("one body a disk");
   for (std::size_t k = 0; k < bodies.size(); ++k) {
@@ -404,7 +419,7 @@ void SoftDisks::Work::commit(const Vector& z) {
       c.memory = {};
     } else if (c.j < 0 && law.static_friction > 0) {
       // It breaks where the disk leaves it, and forms anew where the disk comes to rest or turns
-      // round.
+      // round; at once if the law says so.
       const double from = place(c), to = from + f.along;
       const SoftWall& w = scene_.walls[static_cast<std::size_t>(-1 - c.j)];
       const double v0 =
@@ -417,6 +432,10 @@ void SoftDisks::Work::commit(const Vector& z) {
       if (c.memory.whole) {
         c.memory.whole = std::fabs(to - c.memory.rest) <= law.well;
       } else if (v0 * v1 <= 0) {
+        c.memory.whole = true;
+        c.memory.rest = to;
+      }
+      if (law.renewed && !c.memory.whole) {
         c.memory.whole = true;
         c.memory.rest = to;
       }

@@ -39,11 +39,12 @@ struct ImplicitSettlingSetup {
                     rolling_friction, coulomb, tangential_ratio, static_friction, well, base_spins,
                     scheme, step, relaxation, tolerance, max_iterations, rest, max_time, records);
   }
-  double mass() const;       ///< kg
-  double weight() const;     ///< N
-  double stiffness() const;  ///< K, N/m
-  double time_step() const;  ///< s
-  double time_unit() const;  ///< sqrt(d/g), s
+  double mass() const;                                            ///< kg
+  double weight() const;                                          ///< N
+  double stiffness() const;                                       ///< K, N/m
+  double time_step() const;                                       ///< s
+  double time_unit() const;                                       ///< sqrt(d/g), s
+  double longest_time() const { return max_time * time_unit(); }  ///< s
 };
 
 /// Columns of the curves: table "settling" of the snapshot.
