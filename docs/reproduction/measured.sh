@@ -78,6 +78,25 @@ done
 run touching liffman-lattice --set lattice.gap=0 --set 'sweep.values=[60]'
 measure summary liffman-lattice touching/slope_deg_60/summary.json --member touch_60 --keys liffman.
 
+# Dropped piles of runs/liffman.txt, of those that are there.
+dropped() { # NAME MEMBER: piles by implicit motion, judged as the explicit ones
+  local files=("$here/states/liffman/$1"-?.h5.xz)
+  [ ${#files[@]} -eq 5 ] || return 0
+  local k names=()
+  for k in 1 2 3 4 5; do
+    xz -dkc "$here/states/liffman/$1-$k.h5.xz" > "$1-$k.h5"
+    names+=("\"$1-$k.h5\"")
+  done
+  run "dropped-$2" liffman-dropped --set "grains.files=[$(IFS=,; echo "${names[*]}")]" "${@:3}"
+  measure summary liffman-dropped "dropped-$2/summary.json" --member "$2" --keys dip. dem.repose_angle
+}
+dropped implicit implicit
+dropped coulomb implicit_coulomb --set material.friction=0.5
+for name in unlike coulomb pentagons; do
+  record=$here/states/liffman/${name}_968.json
+  [ ! -e "$record" ] || measure summary liffman-dropped-grains "$record" --member ${name}_968 --keys dip. dem.repose_angle
+done
+
 # The layers of runs/roul-layers.txt, by their states or tables, of the runs that are there.
 layers=$here/states/roul-layers
 unpack() { [ -e "$1.h5" ] || { xz -dkc "$layers/$1.h5.xz" > "$1.h5.part" && mv "$1.h5.part" "$1.h5"; }; }
