@@ -78,6 +78,12 @@ done
 run touching liffman-lattice --set lattice.gap=0 --set 'sweep.values=[60]'
 measure summary liffman-lattice touching/slope_deg_60/summary.json --member touch_60 --keys liffman.
 
+for slip in 0.5 5 50; do
+  run slip-$slip implicit-settling --set 'sweep.values=["wells"]' --set lattice.base_grains=45 \
+    --set settling.max_time=200 --set settling.slip_damping=$slip
+  measure summary implicit-settling slip-$slip/wells/summary.json --member slip_${slip/./} --keys settling.
+done
+
 # Dropped piles of runs/liffman.txt, of those that are there.
 dropped() { # NAME MEMBER: piles by implicit motion, judged as the explicit ones
   local files=("$here/states/liffman/$1"-?.h5.xz)
