@@ -87,21 +87,6 @@ void SoftDisks::Work::set_acting(const std::vector<char>& acting) {
   }
 }
 
-void SoftDisks::Work::add(const Body<2>& disk) {
-  if (!pending_.empty()) throw std::logic_error("a disk is added between whole steps");
-  std::vector<Body<2>> all = bodies_;
-  all.push_back(disk);
-  check_soft(scene_, all, settings_);
-  bodies_ = std::move(all);
-  angles_.push_back(0);
-  acting_.push_back(1);
-  if (takes_end()) last_.emplace_back();
-  widest_ = std::max(widest_, disk.radius);
-  // The next step makes a new list.
-  margin_ = -1;
-  listed_.clear();
-}
-
 void SoftDisks::Work::set_velocities(const std::vector<Body<2>>& bodies) {
   if (bodies.size() != bodies_.size()) throw std::invalid_argument("one body a disk");
   for (std::size_t k = 0; k < bodies.size(); ++k) {
