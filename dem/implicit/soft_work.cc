@@ -414,15 +414,10 @@ void SoftDisks::Work::commit(const Vector& z) {
           step.end ? (f.along - (w.normal.y() * step.drift.x() - w.normal.x() * step.drift.y())) *
                          step.rate
                    : 2 * f.along / dt_ - v0;
-      if (c.memory.whole) {
-        c.memory.whole = std::fabs(to - c.memory.rest) <= law.well;
-      } else if (v0 * v1 <= 0) {
-        c.memory.whole = true;
-        c.memory.rest = to;
-      }
-      if (law.renewed && !c.memory.whole) {
-        c.memory.whole = true;
-        c.memory.rest = to;
+      const bool stays = c.memory.whole && std::fabs(to - c.memory.rest) <= law.well;
+      if (!stays) {
+        c.memory.whole = law.renewed || (!c.memory.whole && v0 * v1 <= 0);
+        if (c.memory.whole) c.memory.rest = to;
       }
     }
   }
