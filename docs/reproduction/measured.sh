@@ -84,7 +84,7 @@ for slip in 0.5 5 50; do
   measure summary implicit-settling slip-$slip/wells/summary.json --member slip_${slip/./} --keys settling.
 done
 
-# Dropped piles of runs/liffman.txt, of those that are there.
+# Dropped piles of runs/liffman.txt and liffman-grains.txt, of those that are there.
 dropped() { # NAME MEMBER: piles by implicit motion, judged as the explicit ones
   local files=("$here/states/liffman/$1"-?.h5.xz)
   [ ${#files[@]} -eq 5 ] || return 0
@@ -99,7 +99,7 @@ dropped() { # NAME MEMBER: piles by implicit motion, judged as the explicit ones
 dropped implicit implicit
 dropped coulomb implicit_coulomb --set material.friction=0.5
 for name in unlike coulomb pentagons; do
-  record=$here/states/liffman/${name}_968.json
+  record=$here/states/liffman-grains/${name}_968.json
   [ ! -e "$record" ] || measure summary liffman-dropped-grains "$record" --member ${name}_968 --keys dip. dem.repose_angle
 done
 
