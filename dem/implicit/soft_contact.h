@@ -48,6 +48,8 @@ struct SoftLaw {
   double tangential_stiffness = 0;  ///< k_t of coulomb, N/m
   double static_friction = 0;       ///< mu_static of a wall's well; 0: none
   double well = 0;                  ///< a, half width of the well, m
+  bool renewed = false;  ///< wells form where a disk comes to touch the wall, too, and anew where
+                         ///< it leaves one: what moves along the wall is dragged
 
   bool has_tangential() const {
     return friction == SoftFriction::viscous ? rolling_friction > 0 && slip_damping > 0

@@ -2,11 +2,28 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 
 #include "dem/checkpoint/checkpoint.h"
+#include "dem/implicit/soft_checks.h"
 #include "dem/implicit/soft_work.h"
 
 namespace grainfield::dem {
+
+void SoftDisks::Work::add(const Body<2>& disk) {
+  if (!pending_.empty()) throw std::logic_error("a disk is added between whole steps");
+  std::vector<Body<2>> all = bodies_;
+  all.push_back(disk);
+  check_soft(scene_, all, settings_);
+  bodies_ = std::move(all);
+  angles_.push_back(0);
+  acting_.push_back(1);
+  if (takes_end()) last_.emplace_back();
+  widest_ = std::max(widest_, disk.radius);
+  // The next step makes a new list.
+  margin_ = -1;
+  listed_.clear();
+}
 
 SoftEnergy SoftDisks::Work::energy() const {
   SoftEnergy out;
@@ -158,6 +175,7 @@ SoftDisks& SoftDisks::operator=(SoftDisks&&) noexcept = default;
 void SoftDisks::step(long steps) { work_->step(steps); }
 bool SoftDisks::try_part() { return work_->try_part(); }
 void SoftDisks::set_acting(const std::vector<char>& acting) { work_->set_acting(acting); }
+void SoftDisks::add(const Body<2>& disk) { work_->add(disk); }
 void SoftDisks::set_velocities(const std::vector<Body<2>>& bodies) {
   work_->set_velocities(bodies);
 }

@@ -121,6 +121,9 @@ class SoftDisks {
   /// Contacts act between disks of value 1, and between these and walls; all of them at the start.
   /// Takes one value a disk; a contact that stops acting is forgotten.
   void set_acting(const std::vector<char>& acting);
+  /// A disk more, the last one, between whole steps; it acts. Throws std::invalid_argument as the
+  /// constructor, for this disk.
+  void add(const Body<2>& disk);
   /// Velocities and spins become those of these bodies.
   void set_velocities(const std::vector<Body<2>>& bodies);
 

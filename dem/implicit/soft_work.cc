@@ -404,7 +404,7 @@ void SoftDisks::Work::commit(const Vector& z) {
       c.memory = {};
     } else if (c.j < 0 && law.static_friction > 0) {
       // It breaks where the disk leaves it, and forms anew where the disk comes to rest or turns
-      // round.
+      // round; at once if the law says so.
       const double from = place(c), to = from + f.along;
       const SoftWall& w = scene_.walls[static_cast<std::size_t>(-1 - c.j)];
       const double v0 =
@@ -414,11 +414,10 @@ void SoftDisks::Work::commit(const Vector& z) {
           step.end ? (f.along - (w.normal.y() * step.drift.x() - w.normal.x() * step.drift.y())) *
                          step.rate
                    : 2 * f.along / dt_ - v0;
-      if (c.memory.whole) {
-        c.memory.whole = std::fabs(to - c.memory.rest) <= law.well;
-      } else if (v0 * v1 <= 0) {
-        c.memory.whole = true;
-        c.memory.rest = to;
+      const bool stays = c.memory.whole && std::fabs(to - c.memory.rest) <= law.well;
+      if (!stays) {
+        c.memory.whole = law.renewed || (!c.memory.whole && v0 * v1 <= 0);
+        if (c.memory.whole) c.memory.rest = to;
       }
     }
   }

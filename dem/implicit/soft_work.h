@@ -27,6 +27,7 @@ class SoftDisks::Work {
   void step(long steps);
   bool try_part();
   void set_acting(const std::vector<char>& acting);
+  void add(const Body<2>& disk);
   void set_velocities(const std::vector<Body<2>>& bodies);
 
   double time() const { return time_; }

@@ -17,8 +17,8 @@
 
 namespace grainfield::dem {
 
-/// `Setup` knows time_step(), time_unit() and max_time, records, rest and gravity; `columns`: of a
-/// record, time first.
+/// `Setup` knows time_step(), time_unit(), longest_time() and records, rest and gravity; `columns`:
+/// of a record, time first.
 template <class Setup, class Disks, std::size_t columns>
 class SoftRun : public ArchivedRun {
  public:
@@ -56,7 +56,7 @@ class SoftRun : public ArchivedRun {
   /// `keys`: what to change where a step fails. Whoever derives from it makes the first record.
   SoftRun(const Setup& setup, std::uint64_t seed, Disks disks, std::string keys)
       : setup_(setup), seed_(seed), disks_(std::move(disks)), keys_(std::move(keys)) {
-    last_step_ = std::max(1L, std::lround(setup.max_time * setup.time_unit() / setup.time_step()));
+    last_step_ = std::max(1L, std::lround(setup.longest_time() / setup.time_step()));
     every_ = std::max(1L, last_step_ / setup.records);
   }
 

@@ -66,6 +66,12 @@ void SwitchingDisks::step(long steps) {
   }
 }
 
+void SwitchingDisks::add(const Body<2>& disk) {
+  disks_.add(disk);
+  soft_.push_back(0);
+  disks_.set_acting(soft_);
+}
+
 void SwitchingDisks::make_soft(const Pair& p) {
   for (const int k : {p.i, p.j}) {
     if (k < 0 || soft_[k]) continue;

@@ -54,6 +54,8 @@ class SwitchingDisks {
 
   /// The same bits whenever it is repeated. Throws as SoftDisks::step.
   void step(long steps);
+  /// A hard disk more, the last one, which overlaps none. Throws as SoftDisks::add.
+  void add(const Body<2>& disk);
 
   double time() const { return disks_.time(); }
   const std::vector<Body<2>>& bodies() const { return disks_.bodies(); }
@@ -65,12 +67,13 @@ class SwitchingDisks {
   const ImplicitTally& implicit_tally() const { return disks_.tally(); }
   std::vector<SoftTouch> touches() const { return disks_.touches(); }
   SoftRest rest() const { return disks_.rest(); }
-  /// Energy with all that was lost, less what was switched, J: stays the same.
+  /// Energy with all that was lost, less what was switched, J: stays the same but for what a disk
+  /// brings that is added.
   double balance() const {
     return energy().total() + losses().total() + tally_.lost - tally_.switched;
   }
 
-  /// As SoftDisks.
+  /// As SoftDisks; those that were added are added before.
   std::string checkpoint() const;
   void restore(const std::string& checkpoint);
 

@@ -41,6 +41,12 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
               row of the map over that of Cambou's
     rve       of heaps, by the summary.json of a run of all and of a run without each of them: the grains that an RVE
               needs, rve_size.*_grains, with the .least and the .most without one heap
+    base      of a lattice pile, by its profiles.csv, over the base disks between the bends of the line model's H (57),
+              |x| < h/sqrt 3: base.horizontal_off_line and base.normal_off_mean are the largest distance of H from its
+              straight line by least squares and of N from its mean, over the largest H and N of all base disks;
+              base.horizontal_explained the share of H's variance that the line explains, base.horizontal_slope its
+              slope over the line model's. N and H of every base disk, and those of lattice and lines, go into
+              results/STUDY.base.MEMBER.csv, in m g
     summary   of another run of the study, by its summary.json or its record NAME.json in states/: the keys that begin
               with those of --keys; with response. among them response.one_peak_to, the share of the depth down to
               which every profile has one peak
@@ -72,6 +78,8 @@ ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.n
          "gravity.xx_ratio", "gravity.yy_ratio", "gravity.top_over_bottom", "gravity.poured_xx_ratio",
          "gravity.poured_yy_ratio", "forces.middle_over_surface", "forces.centre_over_beside", "strain.peaks",
          "strain.width_ratio", *(f"inside.{name}" for name in ("bulk", "shear", "young", "poisson", "fabric_trace")),
+         *(f"base.{name}" for name in ("horizontal_off_line", "normal_off_mean", "horizontal_explained",
+                                       "horizontal_slope")),
          *(f"curvature.{name}" for name in CONSTANTS),
          *(f"signed.{name}" for name in ("cundall", "liao", "derivative")))
 NEAR = 5.0  # degrees
@@ -267,6 +275,40 @@ def centre_of(file):
     return out
 
 
+def lattice_base(file):
+    """The base disks of a lattice pile: x over the base, N and H in m g of grains, lattice and lines; the share of
+    the half base within which the line model's H is straight."""
+    head = file.read_text().partition("\n")[0]
+    height, spacing, weight = (float(re.search(f"{name} ([0-9.e+-]+) {unit}", head)[1])
+                               for name, unit in (("h =", "m,"), ("spacing", "m,"), ("m g =", "N;")))
+    rows = read_table(file)
+    normal, shear = ([row for row in rows if row["profile"] == name] for name in ("base", "base sigma_xy"))
+    out = {"x": column(normal, "x") / (len(normal) * spacing)}
+    for name, of in (("N", normal), ("H", shear)):
+        for model in ("simulation", "lattice", "liffman"):
+            out[name if model == "simulation" else f"{name}_{model}"] = column(of, model) * spacing / weight
+    return out, height / math.sqrt(3) / (len(normal) * spacing)
+
+
+def straightness(base, within):
+    """How straight H and how even N are in the middle of the base."""
+    middle = abs(base["x"]) < within
+    x, h, n = (base[name][middle] for name in ("x", "H", "N"))
+    line = numpy.polyfit(x, h, 1)
+    off = h - numpy.polyval(line, x)
+    return {"base.horizontal_off_line": float(abs(off).max() / abs(base["H"]).max()),
+            "base.horizontal_explained": float(1 - off @ off / ((h - h.mean()) @ (h - h.mean()))),
+            "base.horizontal_slope": float(line[0] / numpy.polyfit(x, base["H_liffman"][middle], 1)[0]),
+            "base.normal_off_mean": float(abs(n - n.mean()).max() / base["N"].max())}
+
+
+def base_table(base):
+    """The base disks as CSV."""
+    lines = [",".join(base)]
+    lines += [",".join(f"{value:.6g}" for value in row) for row in zip(*base.values())]
+    return "\n".join(lines) + "\n"
+
+
 def inside(points, values):
     """Mean of the values in the lower half of every column of points over that in the upper one."""
     known = numpy.isfinite(values)
@@ -395,6 +437,8 @@ def figures(kind, files, keys):
         return summarized(found) | curvatures(numpy.array(maps))
     if kind == "rve":
         return sizes_of(*(json.loads(file.read_text()) for file in files))
+    if kind == "base":
+        return {"ensemble.realizations": 1} | straightness(*lattice_base(files[0]))
     if kind in ("strain", "pieces", "centre"):
         return {"strain": strain_of, "pieces": pieces_of, "centre": lambda found: centre_of(found[0])}[kind](files)
     found = []
@@ -409,7 +453,7 @@ def figures(kind, files, keys):
 def main():
     options = argparse.ArgumentParser(description="Measures on states what no summary has.")
     options.add_argument("kind", choices=("angles", "gravity", "forces", "network", "poured", "fields", "strain",
-                                          "pieces", "centre", "rve", "summary"))
+                                          "pieces", "centre", "rve", "base", "summary"))
     options.add_argument("study", help="results/STUDY.json takes the keys")
     options.add_argument("file", type=pathlib.Path, nargs="+")
     options.add_argument("--member", required=True, help="ends the keys")
@@ -418,6 +462,9 @@ def main():
     stored = HERE / "results" / f"{given.study}.json"
     added = {f"{key}.{given.member}": value for key, value in figures(given.kind, given.file, given.keys).items()}
     write_file(stored, with_keys(stored.read_text(), added).encode())
+    if given.kind == "base":
+        table = base_table(lattice_base(given.file[0])[0])
+        write_file(HERE / "results" / f"{given.study}.base.{given.member}.csv", table.encode())
     print(stored)
 
 

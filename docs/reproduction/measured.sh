@@ -70,6 +70,42 @@ run fit fit-asymmetric --set "$(set_files pile-asymmetric-line)" --set ensemble.
 measure summary fit-asymmetric fit/summary.json --member line \
   --keys fit.cantelaube_asymmetric_zero.rel_l2 fit.cantelaube_asymmetric_zero.chi2
 
+# Lattice piles: the base; rows apart at the source's softness, which settle to a resultant of 1e-6 before they buckle;
+# rows that touch below nearly hard disks.
+run soft-piles liffman-soft-piles --set 'sweep.values=["slope_30","slope_32_6","slope_45","slope_50","slope_55"]'
+for angle in 30 32_6 45 50 55; do
+  measure base liffman-soft-piles soft-piles/slope_$angle/profiles.csv --member slope_$angle
+done
+run apart liffman-soft-piles --set 'sweep.values=["slope_60"]' --set lattice.gap=5e-4 \
+  --set rest.unbalanced_force_ratio=1e-8 --set rest.max_time=60
+measure summary liffman-soft-piles apart/slope_60/summary.json --member apart_60 --keys liffman.
+run touching liffman-lattice --set lattice.gap=0 --set 'sweep.values=[60]'
+measure summary liffman-lattice touching/slope_deg_60/summary.json --member touch_60 --keys liffman.
+for slip in 0.5 5 50; do
+  run slip-$slip implicit-settling --set 'sweep.values=["wells"]' --set lattice.base_grains=45 \
+    --set settling.max_time=200 --set settling.slip_damping=$slip
+  measure summary implicit-settling slip-$slip/wells/summary.json --member slip_${slip/./} --keys settling.
+done
+
+# Dropped piles of runs/liffman.txt and liffman-grains.txt, of those that are there.
+dropped() { # NAME MEMBER: piles by implicit motion, judged as the explicit ones
+  local files=("$here/states/liffman/$1"-?.h5.xz)
+  [ ${#files[@]} -eq 5 ] || return 0
+  local k names=()
+  for k in 1 2 3 4 5; do
+    xz -dkc "$here/states/liffman/$1-$k.h5.xz" > "$1-$k.h5"
+    names+=("\"$1-$k.h5\"")
+  done
+  run "dropped-$2" liffman-dropped --set "grains.files=[$(IFS=,; echo "${names[*]}")]" "${@:3}"
+  measure summary liffman-dropped "dropped-$2/summary.json" --member "$2" --keys dip. dem.repose_angle
+}
+dropped implicit implicit
+dropped coulomb implicit_coulomb --set material.friction=0.5
+for name in unlike coulomb pentagons; do
+  record=$here/states/liffman-grains/${name}_968.json
+  [ ! -e "$record" ] || measure summary liffman-dropped-grains "$record" --member ${name}_968 --keys dip. dem.repose_angle
+done
+
 # The layers of runs/roul-layers.txt, by their states or tables, of the runs that are there.
 layers=$here/states/roul-layers
 unpack() { [ -e "$1.h5" ] || { xz -dkc "$layers/$1.h5.xz" > "$1.h5.part" && mv "$1.h5.part" "$1.h5"; }; }

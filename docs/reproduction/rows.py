@@ -262,6 +262,18 @@ def _turning_soft(row: Row, results: Results) -> str | None:
             f"{hard:.0f} times one turned hard again on the way")
 
 
+def _held(row: Row, results: Results) -> str | None:
+    """Whether a pile that settles ends within 1 % of the closed forms, and when it was there."""
+    n, h, until, time = (results.plain(row["study"], f"{row['key']}.{name}.{row['member']}")
+                         for name in ("normal_max_error", "horizontal_max_error", "within_until", "time"))
+    since = results.plain(row["study"], f"{row['key']}.within_from.{row['member']}")
+    if None in (n, h, until, since, time):
+        return None
+    when = "never" if math.isnan(until) else f"within 1 % from {since:.0f} to {until:.0f}"
+    return (f"{'within' if max(n, h) <= 0.01 else 'beyond'} 1 %: N {100 * n:.2g} %, H {100 * h:.2g} % "
+            f"after {time:.0f} sqrt(d/g); {when}")
+
+
 def _static_friction(row: Row, results: Results) -> str | None:
     """What viscous friction alone, without the ground's wells, does with a pile."""
     rests, speed = (results.plain(row["study"], f"{row['key']}.{name}.{row['member']}")
@@ -338,6 +350,7 @@ RULES: dict[str, Rule] = {
     "convergence": _convergence,
     "turning soft": _turning_soft,
     "static friction": _static_friction,
+    "held": _held,
     "spread": _spread,
     "deeper": _deeper,
     "grains needed": _grains_needed,
@@ -369,6 +382,7 @@ RULE_BANDS = {
     "convergence": "the difference falls by more than a fifth, or not",
     "turning soft": "all at rest, 90 % of them soft",
     "static friction": "no rest without it",
+    "held": "N and H at the end",
     "spread": "above the mean",
     "deeper": "at one of the depths of 0.1 to 0.9 more",
     "growth": "power of 0.75 to 1.25",

@@ -152,7 +152,7 @@ def test_every_key_is_one_that_summaries_have():
     rows = [row for row in all_rows() if "key" in row or "from" in row]
     parts = {"steeper flank": "_left_deg", "fit quality": ".chi2_per_dof", "branch": ".branch", "kink": ".kink",
              "contraction": ".contraction", "dip by itself": ".difference", "turning soft": ".at_rest",
-             "static friction": ".at_rest", "flatter flank": "_right_deg",
+             "static friction": ".at_rest", "held": ".within_until", "flatter flank": "_right_deg",
              "nearer": ".line_normal_max_difference"}
     for row in rows:
         for key in [row["key"] + parts.get(row.get("rule"), "")] if "key" in row else [row["from"], row["to"]]:

@@ -68,7 +68,9 @@ void add_history(StudyResult& out) {
 Study hard_to_soft_study() {
   Study out;
   out.name = "hard-to-soft";
-  out.meaning = "hard disks rain into a box, turn soft grain by grain and come to rest";
+  out.meaning =
+      "hard disks rain into a box, or are dropped onto a pile one at a time, turn soft grain by "
+      "grain and come to rest";
   out.sections = {kSwitchKeys};
   out.figures = {switch_figures};
   out.without = {"compare.models", "output.fields"};
@@ -85,8 +87,8 @@ Study hard_to_soft_study() {
                 .subtitle =
                     [](const StudyResult& r) {
                       const auto& s = r.value.get<dem::HardToSoftSetup>();
-                      return fmt::format("{} disks, restitution {:g}, softness {:g}",
-                                         s.columns * s.rows, s.restitution, s.softness);
+                      return fmt::format("{} disks, {}, restitution {:g}, softness {:g}", s.disks(),
+                                         s.source, s.restitution, s.softness);
                     },
                 .pictures = switch_pictures});
   return out;

@@ -1,4 +1,8 @@
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "coupling/studies/implicit_settling/keys.h"
 
 namespace grainfield::coupling {
@@ -6,6 +10,22 @@ namespace {
 
 double largest_error(const Eigen::VectorXd& found, const Eigen::VectorXd& of) {
   return (found - of).cwiseAbs().maxCoeff() / of.cwiseAbs().maxCoeff();
+}
+
+// The source's tolerance of its figures 8 and 9.
+constexpr double kWithin = 0.01;
+
+// sqrt(d/g), of the first or the last record with N and H within kWithin; nan: of none.
+double time_within(const RecordedColumns& columns, bool last) {
+  const std::vector<double>&time = columns.at("time"), &n = columns.at("normal_error"),
+        &h = columns.at("horizontal_error");
+  double out = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t k = 0; k < time.size(); ++k) {
+    if (std::max(n[k], h[k]) > kWithin) continue;
+    out = time[k];
+    if (!last) break;
+  }
+  return out;
 }
 
 }  // namespace
@@ -22,6 +42,11 @@ const std::vector<RunFigure<SettlingFacts>>& settling_rows() {
        [](F f) { return largest_error(f.normal, f.hard_normal); }, "N: largest error"},
       {"horizontal_max_error", "-", "the same of H (Liffman 44)",
        [](F f) { return largest_error(f.horizontal, f.hard_horizontal); }, "H: largest error"},
+      {"within_from", "sqrt(d/g)",
+       "first record in which N and H of every base disk are within 1 % of the closed forms",
+       [](F f) { return time_within(f.columns, false); }},
+      {"within_until", "sqrt(d/g)", "the last one",
+       [](F f) { return time_within(f.columns, true); }},
       {"row_contacts", "-", "contacts between neighbours of a row at the end"},
       {"iterations", "-", "of Newton's method, mean of all solves", nullptr, "iterations a solve"},
       {"most_iterations", "-", "of one solve"},

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "continuum/closed/liffman.h"
 #include "dem/implicit/soft_disks.h"
 #include "dem/laws/contact.h"
 #include "dem/run/soft_run.h"
@@ -88,6 +89,8 @@ class ImplicitSettlingRun final : public SettlingBase {
                 "settling.step, settling.max_iterations") {
     start_ = disks_.energy().total();
     base_ = setup.lattice.base_grains;
+    hard_ = continuum::lattice_base_forces(lattice_rows(setup.lattice), setup.weight(),
+                                           1 / std::numbers::sqrt3);
     record();
   }
 
@@ -119,15 +122,35 @@ class ImplicitSettlingRun final : public SettlingBase {
     const SoftLosses& lost = disks_.losses();
     const ImplicitTally& t = disks_.tally();
     const long solves = t.solves - solves_;
+    const auto [normal, horizontal] = errors();
     const double width = disks_.bodies()[base_ - 1].position.x() - disks_.bodies()[0].position.x();
     records_.push_back(
         {disks_.time() / setup_.time_unit(), e.kinetic / unit(), (e.elastic + e.springs) / unit(),
          lost.normal / unit(), lost.tangential / unit(), lost.well / unit(), lost.scheme / unit(),
          (e.total() + lost.total() - start_) / unit(),
          solves > 0 ? static_cast<double>(t.iterations - iterations_) / solves : 0,
-         (width - (base_ - 1) * lattice_spacing(setup_.lattice)) / (2 * setup_.lattice.radius)});
+         (width - (base_ - 1) * lattice_spacing(setup_.lattice)) / (2 * setup_.lattice.radius),
+         normal, horizontal});
     solves_ = t.solves;
     iterations_ = t.iterations;
+  }
+  /// Largest differences of the base disks' N and H from those of hard disks, over the largest.
+  std::pair<double, double> errors() const {
+    std::vector<continuum::BaseForce> off(hard_.size());
+    for (const SoftTouch& t : disks_.touches()) {
+      if (t.j >= 0 || t.i >= base_) continue;
+      off[t.i].normal += t.repulsion;
+      off[t.i].horizontal -= t.tangential;
+    }
+    continuum::BaseForce away, largest;
+    for (std::size_t k = 0; k < hard_.size(); ++k) {
+      away.normal = std::max(away.normal, std::fabs(off[k].normal - hard_[k].normal));
+      away.horizontal =
+          std::max(away.horizontal, std::fabs(off[k].horizontal - hard_[k].horizontal));
+      largest.normal = std::max(largest.normal, hard_[k].normal);
+      largest.horizontal = std::max(largest.horizontal, std::fabs(hard_[k].horizontal));
+    }
+    return {away.normal / largest.normal, away.horizontal / largest.horizontal};
   }
   /// d/sqrt(d/g), of the last tenth of the records.
   double last_speed() const {
@@ -167,7 +190,8 @@ class ImplicitSettlingRun final : public SettlingBase {
 
   double start_ = 0;  // energy, J
   int base_ = 0;
-  long solves_ = 0, iterations_ = 0;  // at the last record
+  std::vector<continuum::BaseForce> hard_;  // of the base disks, N
+  long solves_ = 0, iterations_ = 0;        // at the last record
 };
 
 void check_settling(const ImplicitSettlingSetup& s) {

@@ -39,21 +39,24 @@ struct ImplicitSettlingSetup {
                     rolling_friction, coulomb, tangential_ratio, static_friction, well, base_spins,
                     scheme, step, relaxation, tolerance, max_iterations, rest, max_time, records);
   }
-  double mass() const;       ///< kg
-  double weight() const;     ///< N
-  double stiffness() const;  ///< K, N/m
-  double time_step() const;  ///< s
-  double time_unit() const;  ///< sqrt(d/g), s
+  double mass() const;                                            ///< kg
+  double weight() const;                                          ///< N
+  double stiffness() const;                                       ///< K, N/m
+  double time_step() const;                                       ///< s
+  double time_unit() const;                                       ///< sqrt(d/g), s
+  double longest_time() const { return max_time * time_unit(); }  ///< s
 };
 
 /// Columns of the curves: table "settling" of the snapshot.
 /// time: in sqrt(d/g); energies in m g d: kinetic, elastic, lost since the start by dashpots along
 /// the normal, by friction, by wells and by BDF2 itself, and what is missing of the balance;
 /// iterations: of Newton's method per solve since the last row; spread: by how much the outermost
-/// base disks have parted, in d.
+/// base disks have parted, in d; normal_error, horizontal_error: the largest difference of a base
+/// disk's N and H from those of hard disks, over the largest one.
 inline constexpr const char* kSettlingColumns[] = {
-    "time",      "kinetic",     "elastic",    "lost_normal", "lost_tangential",
-    "lost_well", "lost_scheme", "unbalanced", "iterations",  "spread"};
+    "time",         "kinetic",         "elastic",    "lost_normal", "lost_tangential",
+    "lost_well",    "lost_scheme",     "unbalanced", "iterations",  "spread",
+    "normal_error", "horizontal_error"};
 
 /// Snapshot "pile" at the end, at rest or after max_time, the lowest row first. Throws
 /// std::invalid_argument naming the key.

@@ -103,7 +103,10 @@ std::vector<Chart> charts_of(const BaseForces& f, const RecordedColumns& columns
       recorded_chart(columns, "Newton's method", "iterations a solve", "Means between the records.",
                      {{"iterations", "iterations"}}),
       recorded_chart(columns, "Creep", "spread / d",
-                     "By how much the outermost base disks have parted.", {{"spread", "spread"}})};
+                     "By how much the outermost base disks have parted.", {{"spread", "spread"}}),
+      recorded_chart(columns, "Distance from hard disks", "largest difference / largest force",
+                     "N and H of the base disks against the closed form (Liffman 42, 44).",
+                     {{"normal_error", "N"}, {"horizontal_error", "H"}})};
 }
 
 // Figures, tables and charts of the first realization: the lattice is perfect, and all are alike.

@@ -2,8 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
+#include "dem/snapshot/snapshot.h"
 #include "tests/coupling/check_scene.h"
 #include "tests/coupling/program.h"
 
@@ -73,6 +77,61 @@ TEST(HardToSoftRun, SameBitsOnAnyThreadsAndAfterStops) {
   EXPECT_EQ(code, 0);
   EXPECT_GT(stops, 2);
   EXPECT_EQ(testing::contents(folder / "k"), one);
+}
+
+constexpr const char* kDrop = R"(title = "drop"
+study = "hard-to-soft"
+[switch]
+source = "drop"
+grains = 20
+friction = "viscous"
+static_friction = 1
+well = 1e-2
+restitution = 0.3
+step = 10
+max_time = 60
+[ensemble]
+realizations = 1
+)";
+
+// A pile of disks that were dropped one at a time, by the source's own laws.
+TEST(HardToSoftRun, DropsAPileThatRests) {
+  const Folder folder;
+  const Output out = program("run " + folder.write("x.toml", kDrop) + " -o " + (folder / "out"));
+  ASSERT_EQ(out.code, 0) << out.err;
+  const Summary s = read_summary(folder / "out/summary.json");
+  EXPECT_NO_THROW(require_documented(s));
+  EXPECT_EQ(number(s, "dem.grains"), 20);
+  EXPECT_EQ(number(s, "switch.soft_share"), 1);
+  EXPECT_NEAR(number(s, "base.weight_ratio"), 1, 0.03);
+  EXPECT_LT(number(s, "switch.balance_error"), 1e-6);
+  const dem::Snapshot pile =
+      dem::read_snapshot(folder / "out/snapshots.h5", "/realization_000/pile");
+  double top = 0, fastest = 0;
+  for (const dem::Grain& g : pile.grains) {
+    top = std::max(top, g.position.y() / (2 * g.radius));
+    fastest = std::max(fastest, g.velocity.norm() / std::sqrt(9.81 * 2 * g.radius));
+  }
+  EXPECT_GT(top, 1.2);  // no single row
+  EXPECT_LT(fastest, 0.02);
+}
+
+TEST(HardToSoftRun, ADropStopsAndGoesOnToTheSameBits) {
+  const Folder folder;
+  const std::string file =
+      folder.write("x.toml", std::string(kDrop) + "[output]\nreport = false\n");
+  const std::string few = " --set switch.grains=6 --set switch.max_time=8";
+  ASSERT_EQ(program("run " + file + " -o " + (folder / "one") + few).code, 0);
+  const std::string run = "run " + file + " -o " + (folder / "k") + few + " ";
+  int stops = 0, code = 130;
+  for (long at = 70; code == 130 && stops < 60; at += 113, ++stops) {
+    code =
+        program(run + (stops > 0 ? "--resume" : "") + " --stop-after-steps " + std::to_string(at))
+            .code;
+  }
+  EXPECT_EQ(code, 0);
+  EXPECT_GT(stops, 3);
+  EXPECT_EQ(testing::contents(folder / "k"), testing::contents(folder / "one"));
 }
 
 TEST(HardToSoftRun, MistakesAreNamed) {

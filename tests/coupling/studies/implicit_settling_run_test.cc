@@ -37,6 +37,10 @@ TEST(ImplicitSettlingRun, RestsOnItsWellsAtTheClosedForm) {
   EXPECT_LT(number(s, "settling.horizontal_max_error"), 0.01);
   EXPECT_NEAR(number(s, "base.weight_ratio"), 1, 1e-7);
   EXPECT_EQ(number(s, "settling.row_contacts"), 0);
+  // It starts without forces, comes within 1 % on the way, and stays there.
+  EXPECT_GT(number(s, "settling.within_from"), 0.5);
+  EXPECT_LT(number(s, "settling.within_from"), number(s, "settling.within_until"));
+  EXPECT_DOUBLE_EQ(number(s, "settling.within_until"), number(s, "settling.time"));
   EXPECT_LT(number(s, "settling.balance_error"), 1e-8);
   EXPECT_GT(number(s, "settling.lost_tangential"), 0);
   EXPECT_EQ(number(s, "settling.spread_speed"), 0);
@@ -50,6 +54,13 @@ TEST(ImplicitSettlingRun, RestsOnItsWellsAtTheClosedForm) {
   EXPECT_EQ(std::count(base.begin(), base.end(), '\n'), 9);
   EXPECT_THAT(testing::read_text(folder / "out/history.csv"),
               HasSubstr("time,kinetic,elastic,lost_normal,lost_tangential,lost_well"));
+  const std::string history = testing::read_text(folder / "out/history.csv");
+  const std::string last = history.substr(history.rfind('\n', history.size() - 2) + 1);
+  const std::size_t comma = last.rfind(','), other = last.rfind(',', comma - 1);
+  const double h = std::stod(last.substr(comma + 1));
+  const double n = std::stod(last.substr(other + 1));
+  EXPECT_NEAR(n, number(s, "settling.normal_max_error"), 1e-6);
+  EXPECT_NEAR(h, number(s, "settling.horizontal_max_error"), 1e-6);
 }
 
 TEST(ImplicitSettlingRun, CreepsWithoutWells) {

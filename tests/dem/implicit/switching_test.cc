@@ -181,6 +181,105 @@ TEST(Switching, GoesOnFromItsCheckpointToTheSameBits) {
   EXPECT_THROW(other.restore(checkpoint.substr(1)), std::invalid_argument);
 }
 
+// The source's own laws: viscous slip between grains, wells on the ground.
+SwitchScene source_scene() {
+  SwitchScene out = ground_scene(0.3);
+  out.soft.grains.friction = SoftFriction::viscous;
+  out.soft.grains.slip_damping = 50;
+  out.soft.grains.rolling_friction = 0.9;
+  SoftLaw& ground = out.soft.walls[0].law;
+  ground = out.soft.grains;
+  ground.static_friction = 1;
+  ground.well = 1e-3;
+  ground.renewed = true;
+  return out;
+}
+
+// Disks dropped one after the other: but for what a new one brings, and what overlaps that began
+// with a switch bring, energy never grows; wells give back no more than they took.
+TEST(Switching, ADropNeverGainsEnergy) {
+  SwitchingDisks pile(source_scene(), {testing::soft_disk(0.1, 1)}, testing::steps_of(0.02));
+  Random random(2);
+  for (int k = 1; k <= 12; ++k) {
+    const auto held = [&] {
+      return pile.energy().total() + pile.losses().well - pile.tally().switched;
+    };
+    double before = held();
+    for (int step = 0; step < (k < 12 ? 200 : 1500); ++step) {
+      pile.step(1);
+      const double now = held();
+      ASSERT_LE(now, before + 1e-8) << k << " " << step;
+      ASSERT_GE(pile.losses().well, -1e-8) << k << " " << step;
+      before = now;
+    }
+    double top = 0;
+    for (const Body<2>& b : pile.bodies()) top = std::max(top, b.position.y() + b.radius);
+    if (k < 12) pile.add(testing::soft_disk(random.uniform(-0.2, 0.2), top + 1.5));
+  }
+  EXPECT_GT(pile.losses().total(), 5);
+  EXPECT_LT(pile.energy().kinetic, 0.1);
+}
+
+// Three disks carry each other by the closed forms (Liffman 42, 44): N = 3 m g/2 below both base
+// disks, H = m g tan(theta)/2 outwards, theta near 30 degrees.
+TEST(Switching, ThreeDisksRestOnTheClosedForces) {
+  SwitchingDisks pile(source_scene(), {testing::soft_disk(-0.5, 0.5), testing::soft_disk(0.5, 0.5)},
+                      testing::steps_of(0.02));
+  pile.step(300);
+  pile.add(testing::soft_disk(0, 0.501 + 0.5 * std::sqrt(3.0)));
+  pile.step(3000);
+  const auto& b = pile.bodies();
+  const double tangent = 0.5 * (b[1].position.x() - b[0].position.x()) /
+                         (b[2].position.y() - 0.5 * (b[0].position.y() + b[1].position.y()));
+  EXPECT_NEAR(tangent, 1 / std::sqrt(3.0), 0.01);
+  double found = 0;
+  for (const SoftTouch& t : pile.touches()) {
+    if (t.j != -1) continue;
+    ++found;
+    EXPECT_NEAR(t.repulsion, 1.5, 1e-3) << t.i;
+    EXPECT_NEAR(-t.tangential, (t.i == 0 ? -0.5 : 0.5) * tangent, 1e-3) << t.i;
+  }
+  EXPECT_EQ(found, 2);
+  EXPECT_EQ(soft_grains(pile), 3);
+  EXPECT_LT(pile.energy().kinetic, 1e-8);
+}
+
+// What slides along the ground is dragged by mu m g where wells form anew; where they do not, it
+// slides for ever.
+TEST(Switching, RenewedWellsStopWhatSlides) {
+  for (const bool renewed : {true, false}) {
+    SwitchScene scene = source_scene();
+    scene.soft.walls[0].law.slip_damping = 0;
+    scene.soft.walls[0].law.renewed = renewed;
+    Body<2> disk = testing::soft_disk(0, 0.5 - 1 / kStiffness);
+    disk.velocity.x() = 1;
+    SwitchingDisks slides(scene, {disk}, testing::steps_of(0.01));
+    slides.step(400);
+    EXPECT_NEAR(slides.bodies()[0].position.x(), renewed ? 0.5 : 4, renewed ? 0.05 : 1e-9);
+    EXPECT_LT(slides.energy().kinetic, renewed ? 1e-3 : 0.6);
+  }
+}
+
+TEST(Switching, ADiskAddedAtTheStartIsOneOfTheFirst) {
+  const SwitchScene scene = box_scene(3.6);
+  const std::vector<Body<2>> disks = rain(3, 3);
+  SwitchingDisks whole(scene, disks, testing::steps_of(0.005));
+  SwitchingDisks grown(scene, {disks.begin(), disks.end() - 1}, testing::steps_of(0.005));
+  grown.add(disks.back());
+  whole.step(500);
+  grown.step(500);
+  EXPECT_EQ(whole.checkpoint(), grown.checkpoint());
+  // In the middle of a run, too: both go on from its checkpoint to the same bits.
+  grown.add(testing::soft_disk(1.8, 12));
+  const std::string checkpoint = grown.checkpoint();
+  grown.step(300);
+  whole.add(testing::soft_disk(1.8, 20));
+  whole.restore(checkpoint);
+  whole.step(300);
+  EXPECT_EQ(whole.checkpoint(), grown.checkpoint());
+  EXPECT_THROW(whole.add(testing::soft_disk(1.8, 0.1)), std::invalid_argument);
+}
+
 TEST(Switching, RefusesWhatCannotBe) {
   const auto refusal = [](const SwitchScene& scene) -> std::string {
     try {
