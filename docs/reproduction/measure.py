@@ -41,6 +41,16 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
               row of the map over that of Cambou's
     rve       of heaps, by the summary.json of a run of all and of a run without each of them: the grains that an RVE
               needs, rve_size.*_grains, with the .least and the .most without one heap
+    heap      of heaps, by their states (heaps.py): levels.H.dip is shoulder less centre of the vertical pressure at
+              these LEVELS of the height, in the windows of the dip and over rho g h of the part above; axis.low and
+              axis.high are sigma_xx over sigma_yy on the axis in the halves of the window of axis.stress_ratio;
+              density.circles is the density on the axis over that of circles that touch the surface from inside,
+              density.cut_circles over that of circles of which a part of half a radius is outside; axes.A_less_B_deg
+              are mean angles between the axes of the fabric along branches, of that along normals and of the stress
+              in the two lowest rows, the left half mirrored, and axes.A_deg those axes, from the horizontal, the
+              stress's of the greatest compression: the axis of a right half that falls outwards is below 0
+    roul_fit  of heaps, by their states: Cantelaube's constants as Roul fits them (roul_fit.py), with the friction
+              angle --phi
     summary   of another run of the study, by its summary.json or its record NAME.json in states/: the keys that begin
               with those of --keys; with response. among them response.one_peak_to, the share of the depth down to
               which every profile has one peak
@@ -62,8 +72,13 @@ from scipy.signal import find_peaks
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
+from heaps import AXIS as AXIS_WINDOW, RVE, Heap, angle_deg  # noqa: E402
 from record import write_file  # noqa: E402
+from roul_fit import FIGURES as FITTED, figures as fitted_as_roul  # noqa: E402
 
+LEVELS = (0.1, 0.25, 0.5)
+TENSORS = ("branch", "normal", "stress")
+PAIRS = (("branch", "stress"), ("normal", "stress"), ("branch", "normal"))
 CONSTANTS = ("bulk", "shear", "young")
 ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.normals_near_30", "angles.order",
          "angles.strong_near_60", "angles.strong_near_30", "response.near_axis", "response.largest",
@@ -72,7 +87,9 @@ ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.n
          "gravity.xx_ratio", "gravity.yy_ratio", "gravity.top_over_bottom", "gravity.poured_xx_ratio",
          "gravity.poured_yy_ratio", "forces.middle_over_surface", "forces.centre_over_beside", "strain.peaks",
          "strain.width_ratio", *(f"inside.{name}" for name in ("bulk", "shear", "young", "poisson", "fabric_trace")),
-         *(f"curvature.{name}" for name in CONSTANTS),
+         *(f"curvature.{name}" for name in CONSTANTS), *(f"levels.{level}.dip" for level in LEVELS), "axis.low",
+         "axis.high", "density.circles", "density.cut_circles", *(f"axes.{name}_deg" for name in TENSORS),
+         *(f"axes.{a}_less_{b}_deg" for a, b in PAIRS), *(f"roul_fit.{name}" for name in FITTED),
          *(f"signed.{name}" for name in ("cundall", "liao", "derivative")))
 NEAR = 5.0  # degrees
 BINS = 36
@@ -183,6 +200,19 @@ def network_of(run):
     measured, theory = (float(volumes[deep] @ one / volumes[deep].sum() / one.mean())
                         for one in (numbers(bears)[deep], cover))
     return found | {"network.g2": measured, "network.g2_over_theory": measured / theory}
+
+
+def heap_of(run):
+    """Dips and stresses at levels, density by circles and axes of fabric and stress of a heap."""
+    heap = Heap(run["pile"])
+    low, high = AXIS_WINDOW
+    middle = (low + high) / 2
+    axes = heap.deviators()
+    return ({f"levels.{level}.dip": heap.dip(level) for level in LEVELS}
+            | {"axis.low": heap.axis_ratio(low, middle), "axis.high": heap.axis_ratio(middle, high),
+               "density.circles": heap.density_ratio(RVE), "density.cut_circles": heap.density_ratio(RVE / 2)}
+            | {f"axes.{a}_less_{b}_deg": angle_deg(axes[a], axes[b]) for a, b in PAIRS}
+            | {f"axes.{name}_deg": angle_deg(axes[name]) for name in TENSORS})
 
 
 def peaks(values):
@@ -381,7 +411,7 @@ def with_keys(text, added):
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
-def figures(kind, files, keys):
+def figures(kind, files, keys, phi_deg=None):
     """What is added to the summary, without its member."""
     if kind == "summary":
         return of_summary(json.loads(files[0].read_text()), keys)
@@ -393,13 +423,16 @@ def figures(kind, files, keys):
                 maps.append([fields["fabric/value/fabric_trace"][:],
                              *(fields["elastic_constants/value"][name][:] for name in CONSTANTS)])
         return summarized(found) | curvatures(numpy.array(maps))
+    if kind == "roul_fit":
+        with h5py.File(files[0]) as states:
+            return fitted_as_roul([Heap(states[name]["pile"]) for name in sorted(states)], phi_deg)
     if kind == "rve":
         return sizes_of(*(json.loads(file.read_text()) for file in files))
     if kind in ("strain", "pieces", "centre"):
         return {"strain": strain_of, "pieces": pieces_of, "centre": lambda found: centre_of(found[0])}[kind](files)
     found = []
     for file in files:
-        of = {"angles": angles_of, "gravity": gravity_of, "forces": forces_of, "network": network_of,
+        of = {"angles": angles_of, "gravity": gravity_of, "forces": forces_of, "network": network_of, "heap": heap_of,
               "poured": lambda run: stress_sums(run["pile"])}[kind]
         with h5py.File(file) as states:
             found.append([of(states[name]) for name in sorted(states)])
@@ -409,14 +442,17 @@ def figures(kind, files, keys):
 def main():
     options = argparse.ArgumentParser(description="Measures on states what no summary has.")
     options.add_argument("kind", choices=("angles", "gravity", "forces", "network", "poured", "fields", "strain",
-                                          "pieces", "centre", "rve", "summary"))
+                                          "pieces", "centre", "rve", "summary", "heap", "roul_fit"))
     options.add_argument("study", help="results/STUDY.json takes the keys")
     options.add_argument("file", type=pathlib.Path, nargs="+")
     options.add_argument("--member", required=True, help="ends the keys")
     options.add_argument("--keys", nargs="+", default=[], help="of a summary: the keys' beginnings")
+    options.add_argument("--phi", type=float, help="of roul_fit: the friction angle, degrees")
     given = options.parse_args()
+    if (given.phi is None) == (given.kind == "roul_fit"):
+        options.error("--phi is the friction angle of roul_fit")
     stored = HERE / "results" / f"{given.study}.json"
-    added = {f"{key}.{given.member}": value for key, value in figures(given.kind, given.file, given.keys).items()}
+    added = {f"{key}.{given.member}": value for key, value in figures(given.kind, given.file, given.keys, given.phi).items()}
     write_file(stored, with_keys(stored.read_text(), added).encode())
     print(stored)
 

@@ -47,6 +47,12 @@ result" means not run or not measured; the row says which.
 - **Spread too wide to tell**: ours lies outside the band and our interval reaches into it, or ours lies inside, our
   interval reaches out of it, and its half exceeds {100 * TOO_WIDE:.0f} % of the source's value. For the ratios of volume fraction and coordination, the effect that the source reports replaces the value
   (0.09, 0.08, 0.04). In a band without an end our whole interval must lie.
+- **Tested rows.** Where the source says how many piles its number is the mean of, that mean has an error as well: the
+  scatter of ours over the root of their number. A row differs when p < 0.05 for a miss of the band this large, of
+  either sign (Student's t), corrected for all tested rows of this page (Holm). It agrees when p of this row alone is
+  above 0.05 and our interval excludes what the row is to tell apart: no dip, the constant of the other source, or
+  without such a value half of the number. Otherwise it is uninformative. The number of piles is that of ours that
+  would see this difference with a probability of 80 % at the first step of Holm's correction.
 - **Recorded strains.** Some strains are known only to the distance of the recorded states. A miss within half of
   this distance cannot tell.
 - **Dips and peaks** are significant at 5 % over [all pours together](#dips-and-peaks-of-all-pours). A peak also
