@@ -150,7 +150,7 @@ class Heap:
         x, force = self.through(share)
         halves = numpy.array((self.half_left, self.half_right)) / self.height * (1 - share)
         at = abs(x) / numpy.where(x < 0, *halves)
-        whole = halves.sum() * (1 - share)
+        whole = halves.sum()
         centre = force[at < CENTRE].sum() / (CENTRE * whole)
         beside = force[(at >= SHOULDER[0]) & (at < SHOULDER[1])].sum() / ((SHOULDER[1] - SHOULDER[0]) * whole)
         return float(beside - centre) / (1 - share)
