@@ -69,7 +69,7 @@ class Heap:
     def __init__(self, state, gravity=9.81):
         self.gravity = gravity
         grains, contacts = state["grains"], state["contacts"]
-        self.places = grains["position"][:][:, :2]
+        self.places, self.ids = grains["position"][:][:, :2], grains["id"][:].astype(int)
         self.areas, self.masses = grains["volume"][:], grains["mass"][:]
         self.radii = grains["radius"][:]
         self.i, self.j = (contacts[name][:].astype(int) for name in ("i", "j"))
@@ -214,17 +214,69 @@ class Heap:
             near.append(self.averaged(at[at[:, 1] >= RVE - 1])["density"])
         return float(centre.mean() / numpy.concatenate(near).mean())
 
-    def deviators(self, heights=(RVE, 2 * RVE)):
+    def strain(self, moved, points, radius=RVE):
+        """The strain in circles by Cambou's best fit to the relative displacements of touching grains' centres
+        (Roul 2.57); moved: the places of the same grains in another state. Contacts with the floor do not count."""
+        pair = self.j >= 0
+        i, j = self.i[pair], self.j[pair]
+        branch = self.places[j] - self.places[i]
+        way = moved[j] - moved[i] - branch
+        middles = (self.scaled[i] + self.scaled[j]) / 2
+        out = numpy.full((len(points), 2, 2), numpy.nan)
+        for k, inside in enumerate(cKDTree(middles).query_ball_point(points, radius)):
+            if len(inside) > 5:
+                gradient, *_ = numpy.linalg.lstsq(branch[inside], way[inside], rcond=None)
+                out[k] = (gradient + gradient.T) / 2
+        return out
+
+    def deviators(self, heights=(RVE, 2 * RVE), moved=None):
         """(xx - yy) + 2 i xy of the averages over the circles of rows, the left half mirrored to the right, of which
-        the real axis is the direction of the largest principal value, of stress that of the greatest compression."""
+        the real axis is the direction of the largest principal value, of stress that of the greatest compression.
+
+        moved: places under another, lower gravity; then of the strain, too, that of the greatest compression as
+        gravity comes back."""
         points = numpy.concatenate([self.inside(height) for height in heights])
         found = self.averaged(points)
-        out = {"x": abs(points[:, 0]) / (self.half_right if points[0, 0] > 0 else self.half_left) * self.height}
-        for name, sign in (("stress", -1), ("branch", 1), ("normal", 1)):
-            of = sign * found[name]
-            z = of[:, 0, 0] - of[:, 1, 1] + 2j * of[:, 0, 1]
-            out[name] = numpy.where(points[:, 0] < 0, z.conj(), z)
+        if moved is not None:
+            found["strain"] = self.strain(moved, points)
+        halves = numpy.where(points[:, 0] < 0, self.half_left, self.half_right) / self.height
+        out = {"x": abs(points[:, 0]) / halves}
+        for name, sign in (("stress", -1), ("branch", 1), ("normal", 1), ("strain", 1)):
+            if name in found:
+                out[name] = deviator(sign * found[name], points[:, 0])
         return out
+
+
+def deviator(tensors, x):
+    """(xx - yy) + 2 i xy, mirrored where x is below 0."""
+    z = tensors[:, 0, 0] - tensors[:, 1, 1] + 2j * tensors[:, 0, 1]
+    return numpy.where(x < 0, z.conj(), z)
+
+
+def remembered(early, late, buried=(3, 6)):
+    """What grains that lay this many diameters below a flank keep of their stress to the end.
+
+    turned_deg is the angle from the axis of their greatest compression then to that at the end, of the sums over the
+    grains, left half mirrored (frozen axes: 0); early_deg and late_deg are both, from the horizontal; correlation is
+    that of the grains' own deviators over their pressures, less the means of both.
+    """
+    at = {grain: k for k, grain in enumerate(late.ids)}
+    deep = early.room(early.scaled) * early.height / early.diameter
+    low = (early.places[:, 1] - early.floor) / early.diameter
+    chosen = numpy.flatnonzero((deep >= buried[0]) & (deep < buried[1]) & (low > 2))
+    later = numpy.array([at[grain] for grain in early.ids[chosen]], dtype=int)
+    x = early.scaled[chosen, 0]
+    both = []
+    for heap, grains in ((early, chosen), (late, later)):
+        stress = -heap.tensors["stress"][grains] * heap.pressure * heap.height**2
+        both.append((deviator(stress, x), stress[:, 0, 0] + stress[:, 1, 1]))
+    (then, p_then), (now, p_now) = both
+    loaded = (p_then > 0) & (p_now > 0)
+    a, b = (z[loaded] / p[loaded] for z, p in both)
+    a, b = a - a.mean(), b - b.mean()
+    return {"turned_deg": angle_deg(now.sum(keepdims=True), then.sum(keepdims=True)), "early_deg": angle_deg(then),
+            "late_deg": angle_deg(now),
+            "correlation": float((a.conj() * b).real.sum() / math.sqrt((abs(a) ** 2).sum() * (abs(b) ** 2).sum()))}
 
 
 def row(height, step=0.025):
@@ -236,4 +288,4 @@ def row(height, step=0.025):
 def angle_deg(a, b=1.0):
     """The mean angle from the axes b to the axes a, degrees, of deviators; each counts as much as both are unlike
     the isotropic tensor, so that a tensor without an axis does not count. Anticlockwise is positive."""
-    return math.degrees(numpy.angle((a * numpy.conj(b)).sum())) / 2
+    return math.degrees(numpy.angle(numpy.nansum(a * numpy.conj(b)))) / 2

@@ -48,7 +48,11 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
               density.cut_circles over that of circles of which a part of half a radius is outside; axes.A_less_B_deg
               are mean angles between the axes of the fabric along branches, of that along normals and of the stress
               in the two lowest rows, the left half mirrored, and axes.A_deg those axes, from the horizontal, the
-              stress's of the greatest compression: the axis of a right half that falls outwards is below 0
+              stress's of the greatest compression: the axis of a right half that falls outwards is below 0; with a
+              state gravity_G also those of the strain, by Cambou
+    memory    of heaps with states poured_N: memory.turned_deg, memory.early_deg, memory.late_deg and
+              memory.correlation are what grains keep of their stress since they were buried (heaps.py, remembered),
+              mean over these states
     roul_fit  of heaps, by their states: Cantelaube's constants as Roul fits them (roul_fit.py), with the friction
               angle --phi
     summary   of another run of the study, by its summary.json or its record NAME.json in states/: the keys that begin
@@ -72,13 +76,14 @@ from scipy.signal import find_peaks
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
-from heaps import AXIS as AXIS_WINDOW, RVE, Heap, angle_deg  # noqa: E402
+from heaps import AXIS as AXIS_WINDOW, RVE, Heap, angle_deg, remembered  # noqa: E402
 from record import write_file  # noqa: E402
 from roul_fit import FIGURES as FITTED, figures as fitted_as_roul  # noqa: E402
 
 LEVELS = (0.1, 0.25, 0.5)
-TENSORS = ("branch", "normal", "stress")
-PAIRS = (("branch", "stress"), ("normal", "stress"), ("branch", "normal"))
+TENSORS = ("branch", "normal", "stress", "strain")
+PAIRS = (("branch", "stress"), ("normal", "stress"), ("branch", "normal"), ("strain", "stress"))
+REMEMBERED = ("turned_deg", "early_deg", "late_deg", "correlation")
 CONSTANTS = ("bulk", "shear", "young")
 ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.normals_near_30", "angles.order",
          "angles.strong_near_60", "angles.strong_near_30", "response.near_axis", "response.largest",
@@ -90,6 +95,7 @@ ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.n
          *(f"curvature.{name}" for name in CONSTANTS), *(f"levels.{level}.dip" for level in LEVELS), "axis.low",
          "axis.high", "density.circles", "density.cut_circles", *(f"axes.{name}_deg" for name in TENSORS),
          *(f"axes.{a}_less_{b}_deg" for a, b in PAIRS), *(f"roul_fit.{name}" for name in FITTED),
+         *(f"memory.{name}" for name in REMEMBERED),
          *(f"signed.{name}" for name in ("cundall", "liao", "derivative")))
 NEAR = 5.0  # degrees
 BINS = 36
@@ -207,12 +213,21 @@ def heap_of(run):
     heap = Heap(run["pile"])
     low, high = AXIS_WINDOW
     middle = (low + high) / 2
-    axes = heap.deviators()
+    lower = [name for name in run if name.startswith("gravity_")]
+    axes = heap.deviators(moved=run[lower[0]]["grains/position"][:][:, :2] if lower else None)
     return ({f"levels.{level}.dip": heap.dip(level) for level in LEVELS}
             | {"axis.low": heap.axis_ratio(low, middle), "axis.high": heap.axis_ratio(middle, high),
                "density.circles": heap.density_ratio(RVE), "density.cut_circles": heap.density_ratio(RVE / 2)}
-            | {f"axes.{a}_less_{b}_deg": angle_deg(axes[a], axes[b]) for a, b in PAIRS}
-            | {f"axes.{name}_deg": angle_deg(axes[name]) for name in TENSORS})
+            | {f"axes.{a}_less_{b}_deg": angle_deg(axes[a], axes[b]) for a, b in PAIRS
+               if a in axes}
+            | {f"axes.{name}_deg": angle_deg(axes[name]) for name in TENSORS if name in axes})
+
+
+def memory_of(run):
+    """What the grains of a heap remember, mean over the states that were left while it grew."""
+    late = Heap(run["pile"])
+    found = [remembered(Heap(run[name]), late) for name in run if name.startswith("poured_")]
+    return {f"memory.{name}": float(numpy.mean([one[name] for one in found])) for name in REMEMBERED}
 
 
 def peaks(values):
@@ -432,17 +447,17 @@ def figures(kind, files, keys, phi_deg=None):
         return {"strain": strain_of, "pieces": pieces_of, "centre": lambda found: centre_of(found[0])}[kind](files)
     found = []
     for file in files:
-        of = {"angles": angles_of, "gravity": gravity_of, "forces": forces_of, "network": network_of, "heap": heap_of,
+        of = {"angles": angles_of, "gravity": gravity_of, "forces": forces_of, "network": network_of, "heap": heap_of, "memory": memory_of,
               "poured": lambda run: stress_sums(run["pile"])}[kind]
         with h5py.File(file) as states:
             found.append([of(states[name]) for name in sorted(states)])
-    return poured(*found) if kind == "poured" else summarized(found[0])
+    return poured(*found) if kind == "poured" else summarized(sum(found, []))
 
 
 def main():
     options = argparse.ArgumentParser(description="Measures on states what no summary has.")
     options.add_argument("kind", choices=("angles", "gravity", "forces", "network", "poured", "fields", "strain",
-                                          "pieces", "centre", "rve", "summary", "heap", "roul_fit"))
+                                          "pieces", "centre", "rve", "summary", "heap", "memory", "roul_fit"))
     options.add_argument("study", help="results/STUDY.json takes the keys")
     options.add_argument("file", type=pathlib.Path, nargs="+")
     options.add_argument("--member", required=True, help="ends the keys")

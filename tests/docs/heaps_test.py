@@ -40,7 +40,7 @@ def state(keep, normal=(0, 1), turned=0.0, stress=None):
     half = 0.49 * SIDE
     corners = numpy.array([(-half, -half), (half, -half), (half, half), (-half, half)])
     count = len(cells)
-    grains = {"position": places, "volume": numpy.full(count, 4 * half**2), "mass": numpy.full(count, 20000 * half**2),
+    grains = {"position": places, "id": numpy.arange(count) + 1, "volume": numpy.full(count, 4 * half**2), "mass": numpy.full(count, 20000 * half**2),
               "radius": numpy.full(count, math.sqrt(2) * half), "angle": numpy.zeros(count),
               "outline": numpy.tile(corners, (count, 1)), "outline_start": numpy.arange(count + 1) * 4}
     contacts = {"i": numpy.array(i), "j": numpy.array(j), "force": numpy.array(force), "normal": numpy.array(normals),
@@ -148,6 +148,49 @@ def test_normals_turned_from_the_branches_are_told_from_them():
     assert abs(heaps.angle_deg(got["branch"][right])) == pytest.approx(90, abs=0.1)
     turned = abs(heaps.angle_deg(got["normal"], got["branch"]))
     assert turned < 10  # the left half, mirrored, turns back
+
+
+def test_strain_is_that_of_a_uniform_gradient_and_not_its_rotation(heap):
+    gradient = numpy.array(((-0.2, 0.3), (0.1, -1))) * 1e-4
+    got = heap.strain(heap.places + heap.places @ gradient.T, heap.inside(0.3))
+    assert got == pytest.approx(numpy.broadcast_to((gradient + gradient.T) / 2, got.shape), abs=1e-10)
+
+
+def test_grains_that_turn_their_stress_are_found_turned():
+    """The axis of every grain at 60 degrees when it is buried and at 75 at the end, of both halves."""
+    def pressed(deg):
+        made = None
+        for side in (-1, 1):
+            axis = numpy.array((math.cos(math.radians(deg)), -side * math.sin(math.radians(deg))))
+            one = state(wedge, stress=-numpy.outer(axis, axis) - 0.1 * numpy.eye(2))
+            if made is None:
+                made = one
+            else:
+                right = one["contacts"]["point"][:, 0] > 0
+                made["contacts"]["force"][right] = one["contacts"]["force"][right]
+        return heaps.Heap(made)
+
+    early, late = pressed(60), pressed(75)
+    got = heaps.remembered(early, late)
+    assert (got["early_deg"], got["late_deg"]) == pytest.approx((-60, -75), abs=1)
+    assert got["turned_deg"] == pytest.approx(-15, abs=1)
+    assert heaps.remembered(early, early)["turned_deg"] == pytest.approx(0, abs=1e-9)
+
+
+def test_grains_that_keep_their_own_stress_are_told_from_those_that_do_not():
+    generator = numpy.random.default_rng(5)
+    made = [state(wedge) for _ in range(3)]
+    force = made[0]["contacts"]["force"]
+    for one, seed in zip(made, (1, 1, 2)):
+        one["contacts"]["force"] = force * numpy.random.default_rng(seed).uniform(0.2, 1.8, (len(force), 1))
+    first, same, other = map(heaps.Heap, made)
+    assert heaps.remembered(first, same)["correlation"] == pytest.approx(1)
+    assert abs(heaps.remembered(first, other)["correlation"]) < 0.1
+    # Grains are known by their ids, not by their places in the table.
+    order = generator.permutation(len(same.ids))
+    same.ids = same.ids[order]
+    same.tensors = {name: values[order] for name, values in same.tensors.items()}
+    assert heaps.remembered(first, same)["correlation"] == pytest.approx(1)
 
 
 CONSTANTS = (0.34, 0.49, -0.2, 0.78, 1.23, 0.38)
