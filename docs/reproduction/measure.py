@@ -39,6 +39,11 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
               constant against tr F over the points of the mean maps: the quadratic over the linear term at one
               standard deviation, its error by the jackknife; signed.cundall, signed.liao and signed.derivative are the sum of that vertical strain along the lowest
               row of the map over that of Cambou's
+    stiffness  of heaps, by a fields.h5 for each heap and level of gravity, in folders NAME-HEAP: how well a power law of
+              tr F, of the mean stress, of the volume fraction and of all three predicts K of the heaps left out:
+              stiffness.fabric, stiffness.pressure, stiffness.density and stiffness.all are the share of the variance of
+              log K over the points of the heap left out that the law of the others explains, mean over heaps (below 0:
+              worse than the mean of the others); stiffness.fabric_less_pressure is a difference of two
     rve       of heaps, by the summary.json of a run of all and of a run without each of them: the grains that an RVE
               needs, rve_size.*_grains, with the .least and the .most without one heap
     heap      of heaps, by their states (heaps.py): levels.H.dip is shoulder less centre of the vertical pressure at
@@ -83,6 +88,7 @@ from roul_fit import FIGURES as FITTED, figures as fitted_as_roul  # noqa: E402
 LEVELS = (0.1, 0.25, 0.5)
 TENSORS = ("branch", "normal", "stress", "strain")
 PAIRS = (("branch", "stress"), ("normal", "stress"), ("branch", "normal"), ("strain", "stress"))
+LAWS = {"fabric": [0], "pressure": [1], "density": [2], "all": [0, 1, 2]}  # of the columns of samples_of()
 REMEMBERED = ("turned_deg", "early_deg", "late_deg", "correlation")
 CONSTANTS = ("bulk", "shear", "young")
 ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.normals_near_30", "angles.order",
@@ -95,7 +101,8 @@ ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.n
          *(f"curvature.{name}" for name in CONSTANTS), *(f"levels.{level}.dip" for level in LEVELS), "axis.low",
          "axis.high", "density.circles", "density.cut_circles", *(f"axes.{name}_deg" for name in TENSORS),
          *(f"axes.{a}_less_{b}_deg" for a, b in PAIRS), *(f"roul_fit.{name}" for name in FITTED),
-         *(f"memory.{name}" for name in REMEMBERED),
+         *(f"memory.{name}" for name in REMEMBERED), *(f"stiffness.{name}" for name in LAWS),
+         "stiffness.fabric_less_pressure",
          *(f"signed.{name}" for name in ("cundall", "liao", "derivative")))
 NEAR = 5.0  # degrees
 BINS = 36
@@ -356,6 +363,47 @@ def curvatures(maps):
     return out
 
 
+def samples_of(fields):
+    """log of tr F, of the mean stress, of the volume fraction and of K at the points that have all four."""
+    fabric, density = fields["fabric/value"], fields["density/value/volume_fraction"][:]
+    pressure = -(fabric["sigma_xx"][:] + fabric["sigma_yy"][:]) / 2
+    columns = numpy.array([fabric["fabric_trace"][:], pressure, density, fields["elastic_constants/value/bulk"][:]])
+    with numpy.errstate(invalid="ignore"):
+        known = (numpy.isfinite(columns) & (columns > 0)).all(axis=0)
+    return numpy.log(columns[:, known])
+
+
+def explained(heaps, columns):
+    """For every heap the share of the variance of its log K that a power law fitted to the other heaps explains.
+
+    heaps: samples_of() of each; columns: those that the law takes."""
+    out = []
+    for k, own in enumerate(heaps):
+        others = numpy.concatenate(heaps[:k] + heaps[k + 1:], axis=1)
+
+        def matrix(samples):
+            return numpy.stack([numpy.ones(samples.shape[1]), *samples[columns]], axis=1)
+
+        law, *_ = numpy.linalg.lstsq(matrix(others), others[3], rcond=None)
+        miss = ((own[3] - matrix(own) @ law) ** 2).sum()
+        out.append(1 - miss / ((own[3] - own[3].mean()) ** 2).sum())
+    return out
+
+
+def stiffness_of(files):
+    """The figures of `stiffness`; files of one heap have the same number at the end of their folder's name."""
+    of_heaps = {}
+    for file in files:
+        with h5py.File(file) as fields:
+            of_heaps.setdefault(re.search(r"-(\d+)$", file.parent.name)[1], []).append(samples_of(fields))
+    heaps = [numpy.concatenate(levels, axis=1) for levels in of_heaps.values()]
+    shares = {name: explained(heaps, columns) for name, columns in LAWS.items()}
+    found = [{f"stiffness.{name}": shares[name][k] for name in LAWS} for k in range(len(heaps))]
+    for one in found:
+        one["stiffness.fabric_less_pressure"] = one["stiffness.fabric"] - one["stiffness.pressure"]
+    return summarized(found)
+
+
 def sizes_of(every, *without_one):
     """The sizes that an RVE needs by all heaps, and by all but one."""
     out = {"ensemble.realizations": every["ensemble.realizations"]}
@@ -441,6 +489,8 @@ def figures(kind, files, keys, phi_deg=None):
     if kind == "roul_fit":
         with h5py.File(files[0]) as states:
             return fitted_as_roul([Heap(states[name]["pile"]) for name in sorted(states)], phi_deg)
+    if kind == "stiffness":
+        return stiffness_of(files)
     if kind == "rve":
         return sizes_of(*(json.loads(file.read_text()) for file in files))
     if kind in ("strain", "pieces", "centre"):
@@ -457,7 +507,7 @@ def figures(kind, files, keys, phi_deg=None):
 def main():
     options = argparse.ArgumentParser(description="Measures on states what no summary has.")
     options.add_argument("kind", choices=("angles", "gravity", "forces", "network", "poured", "fields", "strain",
-                                          "pieces", "centre", "rve", "summary", "heap", "memory", "roul_fit"))
+                                          "pieces", "centre", "rve", "summary", "heap", "memory", "roul_fit", "stiffness"))
     options.add_argument("study", help="results/STUDY.json takes the keys")
     options.add_argument("file", type=pathlib.Path, nargs="+")
     options.add_argument("--member", required=True, help="ends the keys")

@@ -47,6 +47,7 @@ for k in {0..7}; do
     --set 'change.gravity=[8.829]' --set fields.rve_diameters=3
 done
 measure fields pile-fields narrow-{0..7}/fields.h5 --member narrow_2000
+measure stiffness pile-fields narrow-{0..7}/fields.h5 --member narrow_2000
 measure heap pile-point-source pile-point-source-2000.h5 --member grains_2000
 measure heap pile-line-source pile-line-source.h5 --member states
 measure heap pile-fields inside-{0..7}/snapshots.h5 --member fields_2000

@@ -521,6 +521,43 @@ def heap(places, contacts):
                          "normal": force, "point": measure.numpy.array(point, dtype=float)}}
 
 
+def test_the_law_that_makes_the_stiffness_predicts_heaps_left_out():
+    generator = measure.numpy.random.default_rng(3)
+
+    def heap_of(power):
+        trace, pressure, density = generator.normal(0, 1, (3, 200))
+        return measure.numpy.array([trace, pressure, density, 2 + 1.5 * trace + power * pressure])
+
+    alone = [heap_of(0) for _ in range(4)]
+    assert measure.explained(alone, [0]) == pytest.approx([1] * 4)
+    assert max(measure.explained(alone, [1])) < 0.05
+    both = [heap_of(1.5) for _ in range(4)]
+    assert measure.explained(both, [0]) == pytest.approx([0.5] * 4, abs=0.12)
+    assert measure.explained(both, [0, 1, 2]) == pytest.approx([1] * 4)
+    # A heap with another law is not predicted by the others.
+    odd = [*alone[:3], alone[3] * measure.numpy.array([[-1], [1], [1], [1]])]
+    assert measure.explained(odd, [0])[3] < -1
+
+
+def test_levels_of_one_heap_are_left_out_together(tmp_path):
+    files = []
+    for level in (5, 9):
+        for heap in range(3):
+            folder = tmp_path / f"level_{level}-{heap}"
+            folder.mkdir()
+            files.append(folder / "fields.h5")
+            trace = measure.numpy.linspace(3, 4, 20)
+            with measure.h5py.File(files[-1], "w") as file:
+                for name, values in {"fabric/value/fabric_trace": trace, "fabric/value/sigma_xx": -level * trace,
+                                     "fabric/value/sigma_yy": -level / trace, "density/value/volume_fraction": trace / 5,
+                                     "elastic_constants/value/bulk": trace**2}.items():
+                    file[name] = values
+                file["elastic_constants/value/bulk"][0] = NAN
+    found = measure.figures("stiffness", files, [])
+    assert found["ensemble.realizations"] == 3 and found["stiffness.fabric"] == pytest.approx(1)
+    assert found["stiffness.fabric_less_pressure"] == pytest.approx(1 - found["stiffness.pressure"])
+
+
 def test_directions_of_forces_by_hand():
     force = [(1, 0.05, 0), (-1, 0.01, 0), (0.5, 0.866, 0), (0.866, -0.5, 0), (0, 0, 0), (0, 1, 0)]
     contacts = [(0, 1 if k < 5 else -1, one, (0, 0, 0)) for k, one in enumerate(force)]
