@@ -5,7 +5,8 @@
     docs/reproduction/predict.py compare STATES.h5 --name NAME
 
 make takes one RUN of study pile-fields a pile, in the order of the states (topic elastic): its elastic_map.csv and
-its summary give E, nu, and the friction angle is the pile's steeper slope. It writes predictions/NAME.json: by model and
+its summary give E, nu, and the friction angle is the pile's steeper slope. A Poisson's ratio of the map outside POISSON
+becomes the nearer end. It writes predictions/NAME.json: by model and
 pile the shoulder less the centre of the pressure on the base and sigma_xx / sigma_yy on the axis, in the windows of
 axis.stress_ratio and dip.difference of a summary. The half angle of the free core is that of Roul's fit (roul_fit.py)
 to a row at ROW of the height, so that no model sees the base. The models:
@@ -43,6 +44,7 @@ PREDICTIONS = HERE / "predictions"
 STORED = HERE / "results/pile-predictions.json"
 FIGURES = ("dip", "axis_ratio")
 ROW = 0.3
+POISSON = (0.0, 0.45)
 POINTS = 41  # of a window
 ABOVE = 1e-6  # of the height: the base itself is the domain's edge
 DIGITS = 6
@@ -95,6 +97,25 @@ def models_of(heap, nu, half_deg, elastic_map):
             "bcc": ("bcc", closed), "fpa": ("fpa", closed)}
 
 
+def usable_map(file, folder):
+    """A copy of elastic_map.csv whose Poisson's ratios the program takes, and the share of its points that this moved."""
+    lines = file.read_text().splitlines(keepends=True)
+    begin = next(k for k, line in enumerate(lines) if not line.startswith("#"))
+    at = lines[begin].strip().split(",").index("poisson")
+    out, known, moved = lines[:begin + 1], 0, 0
+    for line in lines[begin + 1:]:
+        cells = line.rstrip("\n").split(",")
+        nu = float(cells[at])
+        if math.isfinite(nu):
+            known += 1
+            moved += not POISSON[0] <= nu <= POISSON[1]
+            cells[at] = repr(min(max(nu, POISSON[0]), POISSON[1]))
+        out.append(",".join(cells) + "\n")
+    copy = pathlib.Path(folder) / file.name
+    copy.write_text("".join(out))
+    return copy, moved / known
+
+
 def stresses_of(program, model, settings, points):
     """Of a model at points in m; None where it finds no equilibrium, which is told on standard error."""
     with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
@@ -123,13 +144,17 @@ def predict(program, states, runs):
     slope = numpy.mean([math.degrees(math.atan(abs(line[0]))) for one in heaps for line in (one.left, one.right)])
     half_deg = roul_fit.figures(heaps, slope, ROW)["roul_fit.beta_hat_deg"]
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
-    out = {"version": version, "beta_hat_deg": round(half_deg, DIGITS), "piles": []}
+    out = {"version": version, "beta_hat_deg": round(half_deg, DIGITS), "moved_poisson": [],
+           "piles": []}
     for heap, run in zip(heaps, runs):
+        made = tempfile.TemporaryDirectory()
+        elastic_map, moved = usable_map(run / "elastic_map.csv", made.name)
+        out["moved_poisson"].append(round(moved, DIGITS))
         nu = json.loads((run / "summary.json").read_text())["elastic.poisson"]
         left, right = heap.half_left / heap.height, heap.half_right / heap.height
         points = windows(left, right)
         found = {}
-        for name, (model, settings) in models_of(heap, nu, half_deg, run / "elastic_map.csv").items():
+        for name, (model, settings) in models_of(heap, nu, half_deg, elastic_map).items():
             stresses = stresses_of(program, model, settings, [(x * heap.height, y * heap.height) for _, x, y in points])
             figures = ({key: math.nan for key in FIGURES} if stresses is None else
                        figures_of(points, stresses, heap.pressure, left, right))

@@ -90,6 +90,15 @@ def test_every_model_of_a_pile_has_settings_that_the_program_takes():
     assert "map" not in found["even"][1] and found["even"][1]["nu"] == 0.2
 
 
+def test_a_map_is_made_usable_and_says_how_much_of_it(tmp_path):
+    file = tmp_path / "elastic_map.csv"
+    file.write_text("# a map\nx,y,young,poisson\n0,0,1,nan\n1,0,1,-0.1\n2,0,1,0.2\n3,0,1,0.6\n4,0,1,0.3\n")
+    (tmp_path / "copy").mkdir()
+    copy, moved = predict.usable_map(file, tmp_path / "copy")
+    assert copy.read_text() == "# a map\nx,y,young,poisson\n0,0,1,nan\n1,0,1,0.0\n2,0,1,0.2\n3,0,1,0.45\n4,0,1,0.3\n"
+    assert moved == 0.5 and copy != file
+
+
 def test_a_prediction_that_is_not_committed_is_refused(tmp_path, monkeypatch):
     file = predict.PREDICTIONS / "not-committed-by-a-test.json"
     monkeypatch.setattr(predict, "PREDICTIONS", tmp_path)
