@@ -11,6 +11,7 @@ import numpy
 from scipy.spatial import cKDTree
 
 RVE = 0.1
+GRAVITY = 9.81  # m/s2, of a state that does not say
 FLANK = (0.15, 0.85)  # of the height: the part of a flank that has its line, as the program's
 ROUNDS = 10
 BELOW = 1.5  # mean diameters below the flanks' lines, above which the density is not that of the inside
@@ -66,8 +67,8 @@ def flank(x, y, height):
 class Heap:
     """A heap at rest on a plane floor, by the group of its state in a snapshots.h5 (or a dictionary of arrays)."""
 
-    def __init__(self, state, gravity=9.81):
-        self.gravity = gravity
+    def __init__(self, state):
+        self.gravity = abs(float(state.attrs["gravity_y"])) if hasattr(state, "attrs") else GRAVITY
         grains, contacts = state["grains"], state["contacts"]
         self.places, self.ids = grains["position"][:][:, :2], grains["id"][:].astype(int)
         self.areas, self.masses = grains["volume"][:], grains["mass"][:]
@@ -110,8 +111,7 @@ class Heap:
             inside &= y < at + slope * x
         level = numpy.linspace(low, high, 2001)
         width = numpy.clip((level - lines[1][1]) / lines[1][0] - (level - lines[0][1]) / lines[0][0], 0, None)
-        return float(self.areas[inside].sum() / numpy.trapezoid(width, level) if hasattr(numpy, "trapezoid")
-                     else self.areas[inside].sum() / numpy.trapz(width, level))
+        return float(self.areas[inside].sum() / (width.mean() * (high - low)))
 
     def room(self, points):
         """The distance of points to the nearest flank, in heights."""

@@ -10,6 +10,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs/reproduction"))
 
 import heaps  # noqa: E402
+import measure  # noqa: E402
 import roul_fit  # noqa: E402
 
 SIDE = 0.002  # m: squares in a lattice, 2 % smaller than its cells
@@ -154,6 +155,21 @@ def test_strain_is_that_of_a_uniform_gradient_and_not_its_rotation(heap):
     gradient = numpy.array(((-0.2, 0.3), (0.1, -1))) * 1e-4
     got = heap.strain(heap.places + heap.places @ gradient.T, heap.inside(0.3))
     assert got == pytest.approx(numpy.broadcast_to((gradient + gradient.T) / 2, got.shape), abs=1e-10)
+
+
+def test_what_is_measured_in_heaps_has_the_keys_that_are_listed():
+    """The strain of a heap that is pressed down alone: its axis is upright, whatever the stress."""
+    low, high = state(wedge, stress=((-0.4, 0.0), (0.0, -1))), state(wedge)
+    high["grains"]["position"] = low["grains"]["position"] * (1, 1 + 1e-5, 1)
+    run = {"pile": low, "gravity_8.8": {"grains/position": high["grains"]["position"]}}
+    found = measure.heap_of(run)
+    assert set(found) <= set(measure.ADDED) and "axes.strain_deg" in found
+    assert abs(found["axes.strain_deg"]) == pytest.approx(90, abs=0.1)
+    assert found["axes.strain_less_stress_deg"] == pytest.approx(0, abs=1)
+    assert found["axis.low"] == pytest.approx(0.4, rel=0.05) and found["axis.high"] == pytest.approx(0.4, rel=0.05)
+    assert not any("strain" in key for key in measure.heap_of({"pile": low}))
+    growing = measure.memory_of({"pile": low, "poured_5": state(lambda x, y: wedge(x, y + 0.05))})
+    assert set(growing) <= set(measure.ADDED) and growing["memory.turned_deg"] == pytest.approx(0, abs=0.1)
 
 
 def test_grains_that_turn_their_stress_are_found_turned():
