@@ -535,10 +535,15 @@ def of_test(found: Measured, row: Row, results: Results) -> str:
     informs = abs(row["alternative"] - found.value) > half if "alternative" in row else half <= stake_of(row)
     if alone >= 0.05 and informs:
         return "agrees"
-    # At the first step of Holm's correction: what is off by itself as far as it is, else the stake.
-    piles = piles_to_inform(found, row, miss if alone < 0.05 else stake_of(row), 0.05 / max(len(every), 1))
-    enough = (f"{piles} piles would inform" if piles and piles > found.freedom + 1 else "between both" if piles else
-              f"no number of piles of ours would inform beside the source's {row['piles']}")
+    # What is off by itself is to be seen as far as it is, else the stake; at the first step of Holm's correction.
+    effect = miss if alone < 0.05 else stake_of(row)
+    piles, by_itself = (piles_to_inform(found, row, effect, level) for level in (0.05 / max(len(every), 1), 0.05))
+    if piles:
+        enough = f"{piles} piles would inform" if piles > found.freedom + 1 else "between both"
+    elif by_itself and by_itself > found.freedom + 1:
+        enough = f"{by_itself} piles would inform by itself, none over all tested rows (the source has {row['piles']})"
+    else:
+        enough = f"no number of piles of ours would inform beside the source's {row['piles']}"
     return "uninformative: " + (f"p = {alone:.2g} by itself, {p:.2g} over all tested rows; " if alone < 0.05 else "") + enough
 
 
