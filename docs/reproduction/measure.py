@@ -54,7 +54,8 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
               are mean angles between the axes of the fabric along branches, of that along normals and of the stress
               in the two lowest rows, the left half mirrored, and axes.A_deg those axes, from the horizontal, the
               stress's of the greatest compression: the axis of a right half that falls outwards is below 0; with a
-              state gravity_G also those of the strain, by Cambou
+              state gravity_G also those of the strain, by Cambou; axes.stress_core_deg and axes.stress_flank_deg are the
+              stress's in CORE half bases of the apex and beyond FLANK half bases
     memory    of heaps with states poured_N: memory.turned_deg, memory.early_deg, memory.late_deg and
               memory.correlation are what grains keep of their stress since they were buried (heaps.py, remembered),
               mean over these states
@@ -86,6 +87,7 @@ from record import write_file  # noqa: E402
 from roul_fit import FIGURES as FITTED, figures as fitted_as_roul  # noqa: E402
 
 LEVELS = (0.1, 0.25, 0.5)
+CORE, FLANK = (0.1, 0.2), 0.4  # nearer to the axis both halves mix
 TENSORS = ("branch", "normal", "stress", "strain")
 PAIRS = (("branch", "stress"), ("normal", "stress"), ("branch", "normal"), ("strain", "stress"))
 LAWS = {"fabric": [0], "pressure": [1], "density": [2], "all": [0, 1, 2]}  # of the columns of samples_of()
@@ -101,7 +103,8 @@ ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.n
          *(f"curvature.{name}" for name in CONSTANTS), *(f"levels.{level}.dip" for level in LEVELS), "axis.low",
          "axis.high", "density.circles", "density.cut_circles", *(f"axes.{name}_deg" for name in TENSORS),
          *(f"axes.{a}_less_{b}_deg" for a, b in PAIRS), *(f"roul_fit.{name}" for name in FITTED),
-         *(f"memory.{name}" for name in REMEMBERED), *(f"stiffness.{name}" for name in LAWS),
+         *(f"memory.{name}" for name in REMEMBERED), "axes.stress_core_deg",
+         "axes.stress_flank_deg", *(f"stiffness.{name}" for name in LAWS),
          "stiffness.fabric_less_pressure",
          *(f"signed.{name}" for name in ("cundall", "liao", "derivative")))
 NEAR = 5.0  # degrees
@@ -227,7 +230,9 @@ def heap_of(run):
                "density.circles": heap.density_ratio(RVE), "density.cut_circles": heap.density_ratio(RVE / 2)}
             | {f"axes.{a}_less_{b}_deg": angle_deg(axes[a], axes[b]) for a, b in PAIRS
                if a in axes}
-            | {f"axes.{name}_deg": angle_deg(axes[name]) for name in TENSORS if name in axes})
+            | {f"axes.{name}_deg": angle_deg(axes[name]) for name in TENSORS if name in axes}
+            | {"axes.stress_core_deg": angle_deg(axes["stress"][(axes["x"] >= CORE[0]) & (axes["x"] < CORE[1])]),
+               "axes.stress_flank_deg": angle_deg(axes["stress"][axes["x"] >= FLANK])})
 
 
 def memory_of(run):
