@@ -60,7 +60,8 @@ for k in 1 2 3 4 5 6 7 8; do
 done
 [ ! -e memory-1.h5 ] || measure memory pile-point-source memory-?.h5 --member recorded_800
 # What is predicted is committed before: predict.py make PROGRAM pile-point-source-2000.h5 narrow-{0..7} --name point-2000
-"$here/predict.py" compare pile-point-source-2000.h5 --name point-2000
+[ ! -e "$here/predictions/point-2000.json" ] ||
+  "$here/predict.py" compare pile-point-source-2000.h5 --name point-2000
 topic() { # TOPIC NAME PILE ...: one topic by these piles
   local files
   files=$(printf '"inside-%s/snapshots.h5",' "${@:3}")
