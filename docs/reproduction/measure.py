@@ -39,6 +39,11 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
               constant against tr F over the points of the mean maps: the quadratic over the linear term at one
               standard deviation, its error by the jackknife; signed.cundall, signed.liao and signed.derivative are the sum of that vertical strain along the lowest
               row of the map over that of Cambou's
+    stiffness  of heaps, by a fields.h5 for each heap and level of gravity, in folders NAME-HEAP: how well a power law of
+              tr F, of the mean stress, of the volume fraction and of all three predicts K of the heaps left out:
+              stiffness.fabric, stiffness.pressure, stiffness.density and stiffness.all are the share of the variance of
+              log K over the points of the heap left out that the law of the others explains, mean over heaps (below 0:
+              worse than the mean of the others); stiffness.fabric_less_pressure is a difference of two
     rve       of heaps, by the summary.json of a run of all and of a run without each of them: the grains that an RVE
               needs, rve_size.*_grains, with the .least and the .most without one heap
     base      of a lattice pile, by its profiles.csv, over the base disks between the bends of the line model's H (57),
@@ -47,6 +52,21 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
               base.horizontal_explained the share of H's variance that the line explains, base.horizontal_slope its
               slope over the line model's. N and H of every base disk, and those of lattice and lines, go into
               results/STUDY.base.MEMBER.csv, in m g
+    heap      of heaps, by their states (heaps.py): levels.H.dip is shoulder less centre of the vertical pressure at
+              these LEVELS of the height, in the windows of the dip and over rho g h of the part above; axis.low and
+              axis.high are sigma_xx over sigma_yy on the axis in the halves of the window of axis.stress_ratio;
+              density.circles is the density on the axis over that of circles that touch the surface from inside,
+              density.cut_circles over that of circles of which a part of half a radius is outside; axes.A_less_B_deg
+              are mean angles between the axes of the fabric along branches, of that along normals and of the stress
+              in the two lowest rows, the left half mirrored, and axes.A_deg those axes, from the horizontal, the
+              stress's of the greatest compression: the axis of a right half that falls outwards is below 0; with a
+              state gravity_G also those of the strain, by Cambou; axes.stress_core_deg and axes.stress_flank_deg are the
+              stress's in CORE half bases of the apex and beyond FLANK half bases
+    memory    of heaps with states poured_N: memory.turned_deg, memory.early_deg, memory.late_deg and
+              memory.correlation are what grains keep of their stress since they were buried (heaps.py, remembered),
+              mean over these states
+    roul_fit  of heaps, by their states: Cantelaube's constants as Roul fits them (roul_fit.py), with the friction
+              angle --phi
     summary   of another run of the study, by its summary.json or its record NAME.json in states/: the keys that begin
               with those of --keys; with response. among them response.one_peak_to, the share of the depth down to
               which every profile has one peak
@@ -68,8 +88,16 @@ from scipy.signal import find_peaks
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
+from heaps import AXIS as AXIS_WINDOW, RVE, Heap, angle_deg, remembered  # noqa: E402
 from record import write_file  # noqa: E402
+from roul_fit import FIGURES as FITTED, figures as fitted_as_roul  # noqa: E402
 
+LEVELS = (0.1, 0.25, 0.5)
+CORE, FLANK = (0.1, 0.2), 0.4  # nearer to the axis both halves mix
+TENSORS = ("branch", "normal", "stress", "strain")
+PAIRS = (("branch", "stress"), ("normal", "stress"), ("branch", "normal"), ("strain", "stress"))
+LAWS = {"fabric": [0], "pressure": [1], "density": [2], "all": [0, 1, 2]}  # of the columns of samples_of()
+REMEMBERED = ("turned_deg", "early_deg", "late_deg", "correlation")
 CONSTANTS = ("bulk", "shear", "young")
 ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.normals_near_30", "angles.order",
          "angles.strong_near_60", "angles.strong_near_30", "response.near_axis", "response.largest",
@@ -80,7 +108,12 @@ ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.n
          "strain.width_ratio", *(f"inside.{name}" for name in ("bulk", "shear", "young", "poisson", "fabric_trace")),
          *(f"base.{name}" for name in ("horizontal_off_line", "normal_off_mean", "horizontal_explained",
                                        "horizontal_slope")),
-         *(f"curvature.{name}" for name in CONSTANTS),
+         *(f"curvature.{name}" for name in CONSTANTS), *(f"levels.{level}.dip" for level in LEVELS), "axis.low",
+         "axis.high", "density.circles", "density.cut_circles", *(f"axes.{name}_deg" for name in TENSORS),
+         *(f"axes.{a}_less_{b}_deg" for a, b in PAIRS), *(f"roul_fit.{name}" for name in FITTED),
+         *(f"memory.{name}" for name in REMEMBERED), "axes.stress_core_deg",
+         "axes.stress_flank_deg", *(f"stiffness.{name}" for name in LAWS),
+         "stiffness.fabric_less_pressure",
          *(f"signed.{name}" for name in ("cundall", "liao", "derivative")))
 NEAR = 5.0  # degrees
 BINS = 36
@@ -191,6 +224,30 @@ def network_of(run):
     measured, theory = (float(volumes[deep] @ one / volumes[deep].sum() / one.mean())
                         for one in (numbers(bears)[deep], cover))
     return found | {"network.g2": measured, "network.g2_over_theory": measured / theory}
+
+
+def heap_of(run):
+    """Dips and stresses at levels, density by circles and axes of fabric and stress of a heap."""
+    heap = Heap(run["pile"])
+    low, high = AXIS_WINDOW
+    middle = (low + high) / 2
+    lower = [name for name in run if name.startswith("gravity_")]
+    axes = heap.deviators(moved=run[lower[0]]["grains/position"][:][:, :2] if lower else None)
+    return ({f"levels.{level}.dip": heap.dip(level) for level in LEVELS}
+            | {"axis.low": heap.axis_ratio(low, middle), "axis.high": heap.axis_ratio(middle, high),
+               "density.circles": heap.density_ratio(RVE), "density.cut_circles": heap.density_ratio(RVE / 2)}
+            | {f"axes.{a}_less_{b}_deg": angle_deg(axes[a], axes[b]) for a, b in PAIRS
+               if a in axes}
+            | {f"axes.{name}_deg": angle_deg(axes[name]) for name in TENSORS if name in axes}
+            | {"axes.stress_core_deg": angle_deg(axes["stress"][(axes["x"] >= CORE[0]) & (axes["x"] < CORE[1])]),
+               "axes.stress_flank_deg": angle_deg(axes["stress"][axes["x"] >= FLANK])})
+
+
+def memory_of(run):
+    """What the grains of a heap remember, mean over the states that were left while it grew."""
+    late = Heap(run["pile"])
+    found = [remembered(Heap(run[name]), late) for name in run if name.startswith("poured_")]
+    return {f"memory.{name}": float(numpy.mean([one[name] for one in found])) for name in REMEMBERED}
 
 
 def peaks(values):
@@ -353,6 +410,47 @@ def curvatures(maps):
     return out
 
 
+def samples_of(fields):
+    """log of tr F, of the mean stress, of the volume fraction and of K at the points that have all four."""
+    fabric, density = fields["fabric/value"], fields["density/value/volume_fraction"][:]
+    pressure = -(fabric["sigma_xx"][:] + fabric["sigma_yy"][:]) / 2
+    columns = numpy.array([fabric["fabric_trace"][:], pressure, density, fields["elastic_constants/value/bulk"][:]])
+    with numpy.errstate(invalid="ignore"):
+        known = (numpy.isfinite(columns) & (columns > 0)).all(axis=0)
+    return numpy.log(columns[:, known])
+
+
+def explained(heaps, columns):
+    """For every heap the share of the variance of its log K that a power law fitted to the other heaps explains.
+
+    heaps: samples_of() of each; columns: those that the law takes."""
+    out = []
+    for k, own in enumerate(heaps):
+        others = numpy.concatenate(heaps[:k] + heaps[k + 1:], axis=1)
+
+        def matrix(samples):
+            return numpy.stack([numpy.ones(samples.shape[1]), *samples[columns]], axis=1)
+
+        law, *_ = numpy.linalg.lstsq(matrix(others), others[3], rcond=None)
+        miss = ((own[3] - matrix(own) @ law) ** 2).sum()
+        out.append(1 - miss / ((own[3] - own[3].mean()) ** 2).sum())
+    return out
+
+
+def stiffness_of(files):
+    """The figures of `stiffness`; files of one heap have the same number at the end of their folder's name."""
+    of_heaps = {}
+    for file in files:
+        with h5py.File(file) as fields:
+            of_heaps.setdefault(re.search(r"-(\d+)$", file.parent.name)[1], []).append(samples_of(fields))
+    heaps = [numpy.concatenate(levels, axis=1) for levels in of_heaps.values()]
+    shares = {name: explained(heaps, columns) for name, columns in LAWS.items()}
+    found = [{f"stiffness.{name}": shares[name][k] for name in LAWS} for k in range(len(heaps))]
+    for one in found:
+        one["stiffness.fabric_less_pressure"] = one["stiffness.fabric"] - one["stiffness.pressure"]
+    return summarized(found)
+
+
 def sizes_of(every, *without_one):
     """The sizes that an RVE needs by all heaps, and by all but one."""
     out = {"ensemble.realizations": every["ensemble.realizations"]}
@@ -423,7 +521,7 @@ def with_keys(text, added):
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
-def figures(kind, files, keys):
+def figures(kind, files, keys, phi_deg=None):
     """What is added to the summary, without its member."""
     if kind == "summary":
         return of_summary(json.loads(files[0].read_text()), keys)
@@ -435,6 +533,11 @@ def figures(kind, files, keys):
                 maps.append([fields["fabric/value/fabric_trace"][:],
                              *(fields["elastic_constants/value"][name][:] for name in CONSTANTS)])
         return summarized(found) | curvatures(numpy.array(maps))
+    if kind == "roul_fit":
+        with h5py.File(files[0]) as states:
+            return fitted_as_roul([Heap(states[name]["pile"]) for name in sorted(states)], phi_deg)
+    if kind == "stiffness":
+        return stiffness_of(files)
     if kind == "rve":
         return sizes_of(*(json.loads(file.read_text()) for file in files))
     if kind == "base":
@@ -443,24 +546,28 @@ def figures(kind, files, keys):
         return {"strain": strain_of, "pieces": pieces_of, "centre": lambda found: centre_of(found[0])}[kind](files)
     found = []
     for file in files:
-        of = {"angles": angles_of, "gravity": gravity_of, "forces": forces_of, "network": network_of,
+        of = {"angles": angles_of, "gravity": gravity_of, "forces": forces_of, "network": network_of, "heap": heap_of, "memory": memory_of,
               "poured": lambda run: stress_sums(run["pile"])}[kind]
         with h5py.File(file) as states:
             found.append([of(states[name]) for name in sorted(states)])
-    return poured(*found) if kind == "poured" else summarized(found[0])
+    return poured(*found) if kind == "poured" else summarized(sum(found, []))
 
 
 def main():
     options = argparse.ArgumentParser(description="Measures on states what no summary has.")
     options.add_argument("kind", choices=("angles", "gravity", "forces", "network", "poured", "fields", "strain",
-                                          "pieces", "centre", "rve", "base", "summary"))
+                                          "pieces", "centre", "rve", "base", "summary", "heap", "memory",
+                                          "roul_fit", "stiffness"))
     options.add_argument("study", help="results/STUDY.json takes the keys")
     options.add_argument("file", type=pathlib.Path, nargs="+")
     options.add_argument("--member", required=True, help="ends the keys")
     options.add_argument("--keys", nargs="+", default=[], help="of a summary: the keys' beginnings")
+    options.add_argument("--phi", type=float, help="of roul_fit: the friction angle, degrees")
     given = options.parse_args()
+    if (given.phi is None) == (given.kind == "roul_fit"):
+        options.error("--phi is the friction angle of roul_fit")
     stored = HERE / "results" / f"{given.study}.json"
-    added = {f"{key}.{given.member}": value for key, value in figures(given.kind, given.file, given.keys).items()}
+    added = {f"{key}.{given.member}": value for key, value in figures(given.kind, given.file, given.keys, given.phi).items()}
     write_file(stored, with_keys(stored.read_text(), added).encode())
     if given.kind == "base":
         table = base_table(lattice_base(given.file[0])[0])

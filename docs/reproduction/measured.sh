@@ -47,6 +47,21 @@ for k in {0..7}; do
     --set 'change.gravity=[8.829]' --set fields.rve_diameters=3
 done
 measure fields pile-fields narrow-{0..7}/fields.h5 --member narrow_2000
+measure stiffness pile-fields narrow-{0..7}/fields.h5 --member narrow_2000
+measure heap pile-point-source pile-point-source-2000.h5 --member grains_2000
+measure heap pile-line-source pile-line-source.h5 --member states
+measure heap pile-fields inside-{0..7}/snapshots.h5 --member fields_2000
+measure roul_fit fit-cantelaube-point pile-point-source-2000.h5 --member grains_2000 --phi 28
+measure roul_fit fit-cantelaube-line pile-line-source.h5 --member states --phi 26
+# Piles with source.record, of a list of runs.
+grown=$here/states/piles/memory-800
+for k in 1 2 3 4 5 6 7 8; do
+  [ ! -e "$grown-$k.h5.xz" ] || [ -e "memory-$k.h5" ] || xz -dkc "$grown-$k.h5.xz" > "memory-$k.h5"
+done
+[ ! -e memory-1.h5 ] || measure memory pile-point-source memory-?.h5 --member recorded_800
+# What is predicted is committed before: predict.py make PROGRAM pile-point-source-2000.h5 narrow-{0..7} --name point-2000
+[ ! -e "$here/predictions/point-2000.json" ] ||
+  "$here/predict.py" compare pile-point-source-2000.h5 --name point-2000
 topic() { # TOPIC NAME PILE ...: one topic by these piles
   local files
   files=$(printf '"inside-%s/snapshots.h5",' "${@:3}")

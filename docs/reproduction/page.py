@@ -23,10 +23,12 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 from record import record_run, write_file  # noqa: E402
 from rows import FILES, NOT_RUN, TOO_WIDE, Row, all_rows, band, judged, read_toml, unanswered, with_unit  # noqa: E402
-from summaries import Refused, Results  # noqa: E402
+from scipy import stats  # noqa: E402
+from summaries import NAN, Measured, Refused, Results, holm  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 PAGE = HERE.parent / "reproduction.md"
+PREDICTION = "pile-predictions"
 NO_COMMAND = "run before commands were stored: see the case's page"
 
 INTRODUCTION = (
@@ -47,6 +49,12 @@ result" means not run or not measured; the row says which.
 - **Spread too wide to tell**: ours lies outside the band and our interval reaches into it, or ours lies inside, our
   interval reaches out of it, and its half exceeds {100 * TOO_WIDE:.0f} % of the source's value. For the ratios of volume fraction and coordination, the effect that the source reports replaces the value
   (0.09, 0.08, 0.04). In a band without an end our whole interval must lie.
+- **Tested rows.** Where the source says how many piles its number is the mean of, that mean has an error as well: the
+  scatter of ours over the root of their number. A row differs when p < 0.05 for a miss of the band this large, of
+  either sign (Student's t), corrected for all tested rows of this page (Holm). It agrees when p of this row alone is
+  above 0.05 and our interval excludes what the row is to tell apart: no dip, the constant of the other source, or
+  without such a value half of the number. Otherwise it is uninformative. The number of piles is that of ours that
+  would see this difference with a probability of 80 % at the first step of Holm's correction.
 - **Recorded strains.** Some strains are known only to the distance of the recorded states. A miss within half of
   this distance cannot tell.
 - **Dips and peaks** are significant at 5 % over [all pours together](#dips-and-peaks-of-all-pours). A peak also
@@ -168,6 +176,55 @@ def verdicts(results: Results, studies: list[str]) -> str:
         "piles: [Liffman](cases/liffman-lattice.md).\n")
 
 
+#: Models of predict.py, in words.
+PREDICTED = {"layers": "`fe_mohr_coulomb_wedge`, measured map, in layers along the slopes",
+             "at_once": "the same, gravity on the whole heap", "even": "the same, one measured ν and no map",
+             "core": "`fe_cantelaube_core`, β̂ fitted above the base", "zero": "`cantelaube`, branch zero",
+             "minus": "`cantelaube`, branch minus", "plus": "`cantelaube`, branch plus", "bcc": "`bcc`", "fpa": "`fpa`"}
+
+
+def predictions(results: Results) -> str:
+    """What models say of heaps by their own constants, beside what was measured afterwards."""
+    every = results.all.get(PREDICTION, {})
+    names = [key.removesuffix(".realizations") for key in every if key.endswith(".realizations")]
+    rows = [(name, model) for name in names for model in PREDICTED if f"{name}.{model}.dip_miss" in every]
+    if not rows:
+        return ""
+    p_values = {}
+    for name, model in rows:
+        for figure in ("dip", "axis_ratio"):
+            miss = predicted(results, name, f"{model}.{figure}_miss", f"{model}.{figure}.piles")
+            p_values[name, model, figure] = float(2 * stats.t.sf(abs(miss.value) / miss.error, miss.freedom))
+    corrected = dict(zip(p_values, holm(list(p_values.values()))))
+
+    def cell(name: str, model: str, figure: str) -> str:
+        told = predicted(results, name, f"{model}.{figure}", f"{model}.{figure}.piles")
+        p = corrected[name, model, figure]
+        return f"{told.value:.3f} ± {told.error:.3f}, " + ("differs" if p < 0.05 else "within") + f" (p = {p:.2g})"
+
+    out = (
+        "\n## What continuum models predict of heaps\n\n"
+        "`docs/reproduction/predict.py` gives each heap's own slopes, E, ν and β̂ to the models, none of which sees "
+        "the pressure on the base. A prediction is committed before it is compared. A model differs where its mean "
+        "miss, heap by heap, has p < 0.05 (Student's t, two-sided, Holm over the table).\n\n"
+        "| heaps | model | shoulder − centre (ρgh) | σxx/σyy on the axis | heaps that have an answer |\n"
+        "|---|---|---|---|---|\n")
+    for name in names:
+        own = [predicted(results, name, f"measured.{figure}", "realizations") for figure in ("dip", "axis_ratio")]
+        out += f"| {name} | measured | " + " | ".join(f"**{one.value:.3f} ± {one.error:.3f}**" for one in own)
+        out += f" | {every[f'{name}.realizations']:g} |\n"
+        for model in (model for of, model in rows if of == name):
+            out += (f"| {name} | {PREDICTED[model]} | {cell(name, model, 'dip')} | {cell(name, model, 'axis_ratio')} "
+                    f"| {every[f'{name}.{model}.dip.piles']:g} |\n")
+    return out
+
+
+def predicted(results: Results, name: str, key: str, count: str) -> Measured:
+    """A number of results/pile-predictions.json."""
+    value, error, piles = (results.plain(PREDICTION, f"{name}.{of}") for of in (key, f"{key}.standard_error", count))
+    return Measured(value, NAN if error is None else error, piles - 1)
+
+
 def profiles_and_maps(results: Results, studies: list[str]) -> str:
     """Links to the profiles and the pictures themselves, of the studies that have them."""
     out = ""
@@ -273,7 +330,7 @@ def count_line(part: str, count: Counter[str]) -> str:
 def page(results: Results) -> str:
     """The page: every figure of the sources beside ours, and how each study was run."""
     studies = list(dict.fromkeys(row["study"] for row in all_rows()))
-    return (INTRODUCTION + tables(results) + dips(results) + verdicts(results, studies)
+    return (INTRODUCTION + tables(results) + dips(results) + verdicts(results, studies) + predictions(results)
             + profiles_and_maps(results, studies) + how_run(results, studies) + misprints())
 
 

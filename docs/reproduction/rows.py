@@ -5,7 +5,9 @@ A row is a number or a word. A number has `range`, the source's value with its r
 `limits`, or from a rule by name; `agrees` lists the words of ours that agree with the source's. A row that
 has no result says in `gap` why: "not run", or "not measured" where no study has such a figure. A word
 with `single` has no error over realizations, and decides nothing. `cause` says why a row differs, or what
-was tried; a row that does not differ does not show it.
+was tried; a row that does not differ does not show it. A number with `piles` is tested: that many piles of the
+source gave its value, so its mean has an error, too, which is taken by the scatter of ours; `alternative` is the
+value that the row is to tell from it.
 """
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ import tomllib
 from dataclasses import replace
 from typing import Any, Callable
 
-from summaries import NAN, Measured, Refused, Results
+from scipy import stats
+
+from summaries import NAN, Measured, Refused, Results, holm
 
 FOLDER = pathlib.Path(__file__).resolve().parent / "figures"
 #: In the order of the page.
@@ -333,12 +337,37 @@ def _nearer(row: Row, results: Results) -> str | None:
     return f"{'N is nearer' if n < h else 'N is not nearer'}: off by {100 * n:.2g} %, H by {100 * h:.2g} %"
 
 
+def _dip_inside(row: Row, results: Results) -> str | None:
+    """At which levels there is a dip beyond the errors of all levels (Bonferroni)."""
+    found = {level: results.number(row["study"], f"levels.{level}.dip", row["member"]) for level in row["levels"]}
+    if None in found.values():
+        return None
+    sure = [level for level, one in found.items()
+            if len(found) * stats.t.sf(one.value / one.error, one.freedom) < 0.025]
+    least, most = min(found), max(found)
+    word = "neither" if not sure else "up to a height" if least in sure and most not in sure else "elsewhere"
+    return f"{word}: shoulder - centre " + ", ".join(f"{one.value:.2f} ± {one.error:.2f}" for one in found.values())
+
+
+def _apart(row: Row, results: Results) -> str | None:
+    """Whether two axes are apart: by more than `least` degrees, or surely by less than `within`."""
+    found = results.number(row["study"], row["key"], row.get("member", ""))
+    if found is None:
+        return None
+    size = abs(found.value)
+    word = ("not collinear" if size - found.half > row["least"] else
+            "collinear" if size + found.half <= row["within"] else "between")
+    return f"{word}: {found.value:+.1f} ± {found.error:.1f}°"
+
+
 RULES: dict[str, Rule] = {
     "steeper flank": _flank(True),
     "flatter flank": _flank(False),
     "ratio": _ratio,
     "dip over all pours": _dip_over_all,
     "dip by itself": _dip_by_itself,
+    "dip inside": _dip_inside,
+    "apart": _apart,
     "peaks at every depth": _peaks_at_every_depth,
     "rises": _rises,
     "hardly changes": _hardly_changes,
@@ -373,6 +402,8 @@ def rule_of(row: Row) -> Rule:
 RULE_BANDS = {
     "dip over all pours": "at 5 %, Holm",
     "dip by itself": "at 5 %",
+    "dip inside": "at 5 % over these levels",
+    "apart": "more than 1° beyond our 95 % interval",
     "peaks at every depth": "at a quarter, half and three quarters",
     "rises": "beyond our 95 % interval",
     "contraction": "each beyond our 95 % interval",
@@ -456,6 +487,80 @@ def agreement(found: Measured, row: Row) -> str:
     return "agrees" if inside or miss == 0 and found.half <= TOO_WIDE * stake else WIDE
 
 
+POWER, MOST_PILES = 0.8, 10_000
+
+
+def off_band(found: Measured, row: Row) -> tuple[float, float, float]:
+    """How far ours lies outside the band, the error of this with the source's own, and the two-sided p of as much.
+
+    One scatter for both: the variance of a mean of n piles less one of m is s^2 (1/n + 1/m), known with n - 1 degrees
+    of freedom.
+    """
+    low, high = row["range"]
+    miss = max(0.0, low - found.value, found.value - high)
+    error = found.error * math.sqrt(1 + (found.freedom + 1) / row["piles"])
+    return miss, error, float(2 * stats.t.sf(miss / error, found.freedom)) if error > 0 else NAN
+
+
+def stake_of(row: Row) -> float:
+    """What a tested row is to see: the distance of `alternative`, or TOO_WIDE of the source's value."""
+    middle = sum(row["range"]) / 2
+    return abs(row["alternative"] - middle) if "alternative" in row else TOO_WIDE * abs(middle)
+
+
+def piles_to_inform(found: Measured, row: Row, effect: float, level: float) -> int | None:
+    """How many piles of ours would see `effect` at `level`, two-sided, with a probability of POWER; none does where the
+    source has too few."""
+    square = found.error**2 * (found.freedom + 1)
+
+    def sees(n: int) -> bool:
+        quantiles = stats.t.ppf(1 - level / 2, n - 1) + stats.t.ppf(POWER, n - 1)
+        return quantiles * math.sqrt(square * (1 / n + 1 / row["piles"])) <= effect
+
+    if not sees(MOST_PILES):
+        return None
+    low, high = 1, MOST_PILES  # too few, enough
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if sees(middle) else (middle, high)
+    return high
+
+
+def tested(results: Results) -> list[tuple[Row, Measured]]:
+    """The rows of all tables that are tested, with ours, where it has an error over counted piles."""
+    found = [(row, rule_of(row)(row, results)) for row in all_rows() if "piles" in row]
+    return [(row, one) for row, one in found
+            if isinstance(one, Measured) and math.isfinite(one.error) and math.isfinite(one.freedom)]
+
+
+def of_test(found: Measured, row: Row, results: Results) -> str:
+    """Differs at 5 % over all tested rows (Holm). Agrees where a miss as large is no rarity by itself and the interval
+    excludes the alternative, or, without one, is no wider to a side than the stake."""
+    if not (math.isfinite(found.error) and math.isfinite(found.freedom)):
+        return "no error, no statement"
+    every = tested(results)
+    corrected = holm([off_band(one, of)[2] for of, one in every])
+    p = next((p for (of, _), p in zip(every, corrected) if of["what"] == row["what"]), off_band(found, row)[2])
+    miss, error, alone = off_band(found, row)
+    half = float(stats.t.ppf(0.975, found.freedom)) * error
+    if p < 0.05:
+        return (f"differs by {with_unit(f'{miss:.2g}', row)} ({miss / error:.1f} standard errors of both, "
+                f"p = {p:.2g} over all tested rows)")
+    informs = abs(row["alternative"] - found.value) > half if "alternative" in row else half <= stake_of(row)
+    if alone >= 0.05 and informs:
+        return "agrees"
+    # What is off by itself is to be seen as far as it is, else the stake; at the first step of Holm's correction.
+    effect = miss if alone < 0.05 else stake_of(row)
+    piles, by_itself = (piles_to_inform(found, row, effect, level) for level in (0.05 / max(len(every), 1), 0.05))
+    if piles:
+        enough = f"{piles} piles would inform" if piles > found.freedom + 1 else "between both"
+    elif by_itself and by_itself > found.freedom + 1:
+        enough = f"{by_itself} piles would inform by itself, none over all tested rows (the source has {row['piles']})"
+    else:
+        enough = f"no number of piles of ours would inform beside the source's {row['piles']}"
+    return "uninformative: " + (f"p = {alone:.2g} by itself, {p:.2g} over all tested rows; " if alone < 0.05 else "") + enough
+
+
 SILENT = {
     "undecided": "too few realizations to tell",
     "between": WIDE,
@@ -483,7 +588,7 @@ def judged(row: Row, results: Results) -> tuple[str, str]:
     if found is None:
         return row.get("gap", NOT_RUN) if results.has(row["study"]) else NOT_RUN, ""
     if isinstance(found, Measured):
-        said = agreement(found, row)
+        said = of_test(found, row, results) if "piles" in row else agreement(found, row)
         return number_text(found, row), said + cause_of(row, said) + note_of(row, results)
     if row.get("single"):
         return found, "no error, no statement"

@@ -124,7 +124,7 @@ class Results:
         count = self.plain(study, f"ensemble.pieces{dot}") or self.realizations(study, member)
         freedom = count - 1 if count is not None and count > 1 else math.inf
         if key.startswith("fit."):
-            kinds = [self.plain(study, f"{key}.{kind}") for kind in ("error", "bootstrap_error")]
+            kinds = [self.plain(study, f"{key}.{kind}{dot}") for kind in ("error", "bootstrap_error")]
             return Measured(value, max((e for e in kinds if e is not None and math.isfinite(e)), default=NAN), freedom)
         error = self.plain(study, f"{key}.standard_error{dot}")
         if error is None and key == "dip.difference":

@@ -96,6 +96,10 @@ void declare_source_keys(SectionKeys s) {
            "pile, steeper on the right; below 0: to the left",
            "Roul 3.11");
   s.only("source.kind", {"line"});
+  s.number("record", "-", IN(record), {1, 1e7},
+           "whole numbers of grains, each above the last: a snapshot poured_N is left of the pile "
+           "as it is when N are poured; more: a larger snapshots.h5");
+  s.or_none();
 }
 
 void declare_floor_keys(SectionKeys s) {

@@ -203,7 +203,7 @@ Report pile_page(const StudyResult& result, const Realization* first, const Pile
   if (first != nullptr) {
     in.pile = first->find("pile");
     for (const auto& [name, state] : first->snapshots) {
-      if (&state == in.pile) continue;
+      if (!dem::is_change(name)) continue;
       in.changed.emplace_back(fmt::format("g = {:g} m/s2", state.gravity.norm()), &state);
     }
   }

@@ -136,6 +136,14 @@ void check_pile(const PileSetup& s) {
     require(s.source.opening == 0, "source.opening", s.source.opening,
             "0 with material.rolling_friction: beside a funnel's plates grains are polygons");
   }
+  for (std::size_t k = 0; k < s.record.size(); ++k) {
+    const double before = k == 0 ? 0 : s.record[k - 1];
+    require(s.record[k] == std::floor(s.record[k]) && s.record[k] > before &&
+                s.record[k] <= s.source.grains,
+            "source.record", s.record[k],
+            fmt::format("whole numbers of grains up to source.grains = {}, each above the last",
+                        s.source.grains));
+  }
   if (!s.change.gravity.empty()) {
     check_method("change.method", s.change.method, s.material, s.motion);
   }

@@ -151,7 +151,7 @@ void PileEnsemble::add(const Realization& realization, const PileFrame& frame) {
     if (!realization.figures.contains(key)) figures[key].push_back(samples.front());
   }
   for (const auto& [name, state] : realization.snapshots) {
-    if (&state != &pile) add_change(name, pile, state, frame);
+    if (dem::is_change(name)) add_change(name, pile, state, frame);
   }
 }
 

@@ -27,6 +27,7 @@ constexpr double kPlateauDrop = 1.5, kPoint = 3;
 void PileRun::pour_point() {
   if (!in_flight_.empty() && in_flight_.front().step <= phases_.steps()) {
     if (join(in_flight_.front())) {
+      record(in_flight_.front().grain + 1);
       in_flight_.pop_front();
     } else {
       in_flight_.front().step = phases_.steps() + kRetryEvery;
@@ -109,6 +110,7 @@ void PileRun::pour_line() {
 }
 
 void PileRun::drop_layer() {
+  record(poured_);
   double bottom = setup_.source.clearance;
   if (poured_ > 0) {
     const Snapshot now = engine_->snapshot();
@@ -149,6 +151,7 @@ void PileRun::drop_layer() {
 }
 
 void PileRun::end_pour() {
+  record(poured_);
   pour_time_ = in_phase();
   enter(PilePhase::settle);
 }

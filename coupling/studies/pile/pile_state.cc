@@ -49,6 +49,14 @@ void PileRun::visit(Archive& archive) {
   archive(at_pile_);
   archive(random_);
   visit_engine(archive);
+  auto recorded = static_cast<std::int64_t>(recorded_.size());
+  archive(recorded);
+  archive.require(recorded >= 0 && recorded <= static_cast<std::int64_t>(setup_.record.size()));
+  recorded_.resize(static_cast<std::size_t>(recorded));
+  for (std::size_t k = 0; k < recorded_.size(); ++k) {
+    archive.snapshot(recorded_[k], record_name(k));
+    archive.require(recorded_[k].has_value());
+  }
   archive.snapshot(poured_pile_, "poured");
   archive.require(poured_pile_.has_value() == (phases_.now() > PilePhase::settle));
   archive.snapshot(pile_, "pile");
@@ -61,6 +69,9 @@ RunResult PileRun::result() const {
   RunResult out;
   if (!done()) return out;
   out.snapshots.emplace_back("pile", *pile_);
+  for (std::size_t k = 0; k < recorded_.size(); ++k) {
+    out.snapshots.emplace_back(record_name(k), *recorded_[k]);
+  }
   auto& f = out.figures;
   add_engine_figures(*engine_, at_pile_, f);
   f["pile.pour_time"] = pour_time_;

@@ -56,6 +56,8 @@ class PileRun final : public PhasedRun<PileGroundwork, PilePhase> {
   bool join(const Flight& flight);
   void drop_layer();
   void end_pour();
+  void record(int grains);
+  std::string record_name(std::size_t k) const;
   void settle();
   void rest();
   void change(long steps);
@@ -74,8 +76,9 @@ class PileRun final : public PhasedRun<PileGroundwork, PilePhase> {
   double awake_sum_ = 0;
   long awake_samples_ = 0;
   double pour_time_ = 0;
-  Diagnostics at_pile_;                  // when the pile was at rest
-  std::optional<Snapshot> poured_pile_;  // before the last relaxation
+  Diagnostics at_pile_;                            // when the pile was at rest
+  std::vector<std::optional<Snapshot>> recorded_;  // of setup_.record, those that were reached
+  std::optional<Snapshot> poured_pile_;            // before the last relaxation
   std::optional<Snapshot> pile_;
   std::optional<GravityChanges> changes_;
 };

@@ -2,6 +2,8 @@
 // changes of gravity -> "gravity_G".
 #include "coupling/studies/pile/simulation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -126,6 +128,16 @@ bool PileRun::settled(int grains) const {
   return engine_->motion().kinetic_energy <= kSettledShare * energy * grains;
 }
 
+void PileRun::record(int grains) {
+  while (recorded_.size() < setup_.record.size() && grains >= setup_.record[recorded_.size()]) {
+    recorded_.emplace_back(named_snapshot(*engine_, record_name(recorded_.size()), seed_, {}));
+  }
+}
+
+std::string PileRun::record_name(std::size_t k) const {
+  return fmt::format("poured_{:g}", setup_.record[k]);
+}
+
 void PileRun::rest() {
   const Diagnostics d = engine_->measure();
   if (!has_come_to_rest(d, "after the pour", smaller_step(setup_.motion))) return;
@@ -150,6 +162,8 @@ void PileRun::change(long steps) {
   changes_->advance(steps, watch);
   if (changes_->done()) enter(PilePhase::done);
 }
+
+bool is_change(const std::string& name) { return name.starts_with("gravity_"); }
 
 std::unique_ptr<Run> make_pile_run(const PileSetup& setup, std::uint64_t seed, int threads) {
   return std::make_unique<PileRun>(setup, seed, threads);

@@ -40,7 +40,8 @@ struct ChangeSetup {
 };
 
 /// A pile (Roul ch. 3): pour -> settle -> rest with every grain awake -> snapshot "pile" -> for
-/// each changed gravity a snapshot "gravity_G", G as {:g} prints it ("gravity_8.829").
+/// each changed gravity a snapshot "gravity_G", G as {:g} prints it ("gravity_8.829"); before it
+/// was finished, of N grains, a snapshot "poured_N" for each of `record`.
 struct PileSetup {
   ShapeSetup shape;
   SourceSetup source;
@@ -54,11 +55,15 @@ struct PileSetup {
   RestSetup rest;
   SleepSettings sleep{.on = true};
   ChangeSetup change;
+  std::vector<double> record;  ///< numbers of grains, whole, each above the last; empty: none
 
   auto members() const {
-    return std::tie(shape, source, floor, material, motion, rest, sleep, change);
+    return std::tie(shape, source, floor, material, motion, rest, sleep, change, record);
   }
 };
+
+/// Whether a snapshot of this name is of the pile under another gravity.
+bool is_change(const std::string& name);
 
 /// A pile: poured, settled, at rest ("pile"), and at rest under each changed gravity
 /// ("gravity_8.829"). Throws

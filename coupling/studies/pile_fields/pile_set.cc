@@ -36,7 +36,7 @@ PileSet::PileSet(const Case& value, const std::vector<std::string>& files, int t
     if (!changes_.empty()) continue;
     std::vector<std::pair<double, std::string>> found;
     for (const auto& [name, state] : one.snapshots) {
-      if (name != "pile") found.emplace_back(state.gravity.norm() / f.gravity, name);
+      if (dem::is_change(name)) found.emplace_back(state.gravity.norm() / f.gravity, name);
     }
     if (found.empty()) {
       throw std::invalid_argument(

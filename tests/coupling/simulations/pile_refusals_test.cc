@@ -28,6 +28,11 @@ TEST(Pile, RefusesWhatCannotBe) {
   s = small_pile("point", "disk");
   s.material.gravity = 0;
   EXPECT_THAT(refusal(s), HasSubstr("material.gravity"));
+  for (const std::vector<double>& record : {std::vector{20.5}, {30.0, 20.0}, {20.0, 81.0}}) {
+    s = small_pile("point", "disk");
+    s.record = record;
+    EXPECT_THAT(refusal(s), HasSubstr("allowed: whole numbers of grains up to source.grains = 80"));
+  }
   s = small_pile("point", "disk");
   s.source.interval = 0.02;
   EXPECT_THAT(refusal(s), HasSubstr("source.interval: found 0.02, allowed: at least 0.102 s"));

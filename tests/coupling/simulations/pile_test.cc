@@ -1,4 +1,5 @@
 // The pile study: balance, restart to the same bits, any number of threads, changes of gravity.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -32,6 +33,36 @@ TEST(Pile, BaseCarriesTheWeight) {
       EXPECT_EQ(p.fraction, 1);
       EXPECT_EQ(p.phase, "done");
     }
+  }
+}
+
+TEST(Pile, RecordsItselfWhileItGrows) {
+  for (const char* source : {"point", "line"}) {
+    PileSetup s = small_pile(source, "rand1");
+    const auto plain = make_pile_run(s, 3, 1);
+    finish(*plain);
+    s.record = {20, 50};
+    const auto run = make_pile_run(s, 3, 1);
+    finish(*run);
+    const RunResult r = run->result();
+    ASSERT_EQ(r.snapshots.size(), 3u) << source;
+    EXPECT_TRUE(same(r.snapshots[0].second, plain->result().snapshots[0].second)) << source;
+    const Snapshot& pile = r.snapshots[0].second;
+    double time = 0;
+    for (const std::size_t k : {1u, 2u}) {
+      const auto& [name, early] = r.snapshots[k];
+      const std::size_t least = k == 1 ? 20 : 50;
+      EXPECT_EQ(name, fmt::format("poured_{}", least));
+      EXPECT_FALSE(is_change(name));
+      EXPECT_GE(early.grains.size(), least) << source;
+      EXPECT_LT(early.grains.size(), least + (source == std::string("point") ? 1 : 20)) << source;
+      EXPECT_GT(early.time, time);
+      time = early.time;
+      for (std::size_t g = 0; g < early.grains.size(); ++g) {
+        EXPECT_EQ(early.grains[g].id, pile.grains[g].id);
+      }
+    }
+    EXPECT_GT(pile.time, time);
   }
 }
 
@@ -107,7 +138,8 @@ TEST(Pile, ResumesToTheSameBitsFromAnyStep) {
   Random random(1);
   for (const char* shape : {"disk", "rand1"}) {
     for (const char* source : {"point", "line"}) {
-      const PileSetup s = with_changes(source, shape);
+      PileSetup s = with_changes(source, shape);
+      s.record = {5, 15};
       const auto whole = make_pile_run(s, 9, 1);
       long total = 0;
       while (!whole->done()) {
