@@ -92,7 +92,7 @@ for angle in 30 32_6 45 50 55; do
   measure base liffman-soft-piles soft-piles/slope_$angle/profiles.csv --member slope_$angle
 done
 run apart liffman-soft-piles --set 'sweep.values=["slope_60"]' --set lattice.gap=5e-4 \
-  --set rest.unbalanced_force_ratio=1e-8 --set rest.max_time=60
+  --set rest.unbalanced_force_ratio=1e-6
 measure summary liffman-soft-piles apart/slope_60/summary.json --member apart_60 --keys liffman.
 run touching liffman-lattice --set lattice.gap=0 --set 'sweep.values=[60]'
 measure summary liffman-lattice touching/slope_deg_60/summary.json --member touch_60 --keys liffman.

@@ -43,7 +43,8 @@ const std::vector<RunFigure<SettlingFacts>>& settling_rows() {
       {"horizontal_max_error", "-", "the same of H (Liffman 44)",
        [](F f) { return largest_error(f.horizontal, f.hard_horizontal); }, "H: largest error"},
       {"within_from", "sqrt(d/g)",
-       "first record in which N and H of every base disk are within 1 % of the closed forms",
+       "first record in which N and H of every base disk are within 1 % of the closed forms; nan: "
+       "none",
        [](F f) { return time_within(f.columns, false); }},
       {"within_until", "sqrt(d/g)", "the last one",
        [](F f) { return time_within(f.columns, true); }},

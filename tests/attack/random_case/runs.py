@@ -73,7 +73,7 @@ MAY_BE_MISSING = re.compile(
     r"|pile\.(apex_x|half_base_\w+|volume_fraction_\w+|repose_error_\w+)|dip\.\w+|axis\.stress_ratio"
     r"|base\.(centre_pressure|largest_\w+)|relaxation\.(force_change|level_error_\w+)"
     r"|(strength|sample\.(secant|critical|peak|strain_at|lateral|residual|plastic|unloading|loop|stiffening))\w*(\.\w+)?"
-    r"|liffman\.horizontal_\w+"
+    r"|liffman\.horizontal_\w+|settling\.within_(from|until)"
     r"|moduli\.\w+\.\w+|rve\..*|pair\.(restitution_tangential|closed_form\.\w+)(\.\w+)?)")
 
 

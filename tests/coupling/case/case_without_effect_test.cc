@@ -167,7 +167,8 @@ TEST(IdleKeys, AreNamedWithLineAndRemedy) {
       read(testing::tiny_case(), {"average.methods=[\"area_exact\"]", "average.kernel=gaussian"})
           .without_effect,
       ElementsAre(HasSubstr("--set: average.kernel: has no effect, only with "
-                            "average.methods = coarse_graining (now [\"area_exact\"])")));
+                            "average.methods = coarse_graining (study point-load, pile, cone) "
+                            "(now [\"area_exact\"])")));
   EXPECT_THAT(read(testing::tiny_case(), {"packing.side=0.01"}).without_effect,
               ElementsAre(HasSubstr("packing.side")));
 }

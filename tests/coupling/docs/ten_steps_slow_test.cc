@@ -114,9 +114,9 @@ std::vector<std::string> near_values(const Key& key, const std::string& file,
 // Other beginnings besides small_case(): the same study with other grains.
 std::vector<Overrides> beginnings(const std::string& study) {
   const std::string spheres = "material.law=hertz", bodies = "material.law=penalty";
-  if (study == "point-load") {
-    const Overrides space{"packing.dim=3", "packing.width=0.05", "packing.depth=0.03",
-                          "compare.models=[\"boussinesq\"]"};
+  if (study == "point-load" || study == "boussinesq-limit") {
+    Overrides space{"packing.dim=3", "packing.width=0.05", "packing.depth=0.03"};
+    if (study == "point-load") space.push_back("compare.models=[\"boussinesq\"]");
     const auto with = [&](Overrides more) {
       more.insert(more.end(), space.begin(), space.end());
       return more;
