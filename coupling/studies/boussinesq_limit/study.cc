@@ -425,9 +425,10 @@ Study boussinesq_limit_study() {
       "moduli of the same layers: to what share it is right, by depth";
   out.sections = {kGrainFilesKeys, kPackingKeys, kMaterialKeys, kMotionKeys,
                   kRestKeys,       kLoadKeys,    kAverageKeys,  kResponseKeys};
-  out.without = {"load.probe_strain",  "average.methods",       "average.rve_shape",
-                 "average.rve_radius", "average.rve_diameters", "average.map_columns",
-                 "average.map_rows"};
+  out.without = {"load.probe_strain",    "average.methods",       "average.rve_shape",
+                 "average.rve_radius",   "average.rve_diameters", "average.map_columns",
+                 "average.map_rows",     "packing.axis_min",      "packing.axis_max",
+                 "packing.exponent_min", "packing.exponent_max"};
   out.material = [](Case& c) -> dem::MaterialSetup& {
     return c.get<dem::PointLoadSetup>().material;
   };
