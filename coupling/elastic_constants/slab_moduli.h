@@ -45,13 +45,13 @@ struct SlabModuli {
 /// `strips` of one slab, each with constants of its own: the mean is that of `whole`, the error
 /// that of the strips' mean; nan for one strip.
 SlabModuli slab_of_strips(const SlabConstants& whole, const std::vector<SlabConstants>& strips);
-/// Of the same slab of several realizations; the error is nan for one.
+/// The mean of one slab over realizations; the error is nan for one.
 SlabModuli slab_of_realizations(const std::vector<SlabConstants>& realizations);
 
-/// What finite elements read with `moduli=`, header depth,E_v,E_h,nu_h,nu_v,G_v or, isotropic,
-/// depth,E,nu: a row at the middle of each slab, and the outer slabs' constants again at the
-/// surface and at `depth`, m. Comment lines have the errors. `slabs`: from the surface downwards.
-/// Throws std::invalid_argument for slabs in another order or none.
+/// The file that finite elements read with `moduli=`, header depth,E_v,E_h,nu_h,nu_v,G_v or,
+/// isotropic, depth,E,nu: a row at the middle of each slab, and the outer slabs' constants again at
+/// the surface and at `depth`, m. Comment lines have the errors. `slabs`: from the surface
+/// downwards. Throws std::invalid_argument for slabs in another order or none.
 std::string moduli_table(const std::vector<SlabModuli>& slabs, double depth, bool isotropic);
 
 }  // namespace grainfield::coupling

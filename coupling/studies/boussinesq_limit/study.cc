@@ -115,7 +115,7 @@ class LimitAnalysis {
     return path.string();
   }
 
-  // The same measurement as numbers of a model.
+  // Numbers of a model from the same measurement.
   ModelChoice of_constants(const std::string& label, const std::string& name) const {
     ModelChoice out{label, name, {}};
     for (std::size_t k = 0; k < 5; ++k)

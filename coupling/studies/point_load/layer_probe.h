@@ -31,9 +31,9 @@ inline constexpr double kSlabLow = 0.25, kSlabHigh = 0.75;
 struct Slab {
   double low = 0, high = 0;
 };
-/// As many slabs of equal thickness as that between the held grains of a layer, from the floor
-/// upwards; they keep half a diameter away from held ones. Throws ComputationFailed where they
-/// would be thinner than a diameter.
+/// `count` slabs of equal thickness between the held grains of a layer, from the floor upwards;
+/// they keep half a diameter away from held ones. Throws ComputationFailed where they would be
+/// thinner than a diameter.
 std::vector<Slab> slabs_of(const Snapshot& layer, double height, int count);
 
 class LayerProber {
@@ -57,7 +57,8 @@ class LayerProber {
   static std::string direction(int number, int dim = 3);
   /// That probe's outcome; none when go_on said no. Throws as settle and stress_before.
   std::optional<ProbeOutcome> probe(int number, const std::function<bool(double)>& go_on);
-  /// The same of all parts: for each slab itself, and then its strips where there are several.
+  /// That probe's outcomes in all parts: for each slab itself, and then its strips where there are
+  /// several.
   std::optional<std::vector<ProbeOutcome>> probe_parts(int number,
                                                        const std::function<bool(double)>& go_on);
   std::size_t parts() const { return parts_.size(); }

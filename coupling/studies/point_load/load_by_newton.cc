@@ -17,7 +17,7 @@ constexpr double kNoTime = 1e-15;  // s
 constexpr double kRestShare = 0.1;
 constexpr double kLeastRatio = 1e-12;  // that the solver takes
 
-/// What the solver reached.
+/// Ratio, steps and iterations of the solver.
 Reached reached_by(const QuasistaticResult& r) {
   return {r.unbalanced_force_ratio, static_cast<double>(r.steps),
           static_cast<double>(r.iterations)};
