@@ -54,7 +54,7 @@ measure heap pile-fields inside-{0..7}/snapshots.h5 --member fields_2000
 measure roul_fit fit-cantelaube-point pile-point-source-2000.h5 --member grains_2000 --phi 28
 measure roul_fit fit-cantelaube-line pile-line-source.h5 --member states --phi 26
 # Piles with source.record, of a list of runs.
-grown=$here/states/piles/memory-800
+grown=$here/states/memory/memory-800
 for k in 1 2 3 4 5 6 7 8; do
   [ ! -e "$grown-$k.h5.xz" ] || [ -e "memory-$k.h5" ] || xz -dkc "$grown-$k.h5.xz" > "memory-$k.h5"
 done
