@@ -53,10 +53,11 @@ void write_grains(const std::string& folder, const StudyResult& result) {
                             state);
       }
       if (!want.vtu || r > 0) continue;
-      // Displacements are seen from the first state.
+      // Displacements are seen from the first state; a pile that still grows has other grains.
       const dem::Snapshot& first = grains.snapshots.front().second;
+      const bool moved = &state != &first && state.grains.size() == first.grains.size();
       write_grains_vtu(fmt::format("{}/grains_{}.vtu", states, name), state,
-                       &state == &first ? nullptr : &first);
+                       moved ? &first : nullptr);
       write_contacts_vtu(fmt::format("{}/contacts_{}.vtu", states, name), state);
       write_chains_vtu(fmt::format("{}/chains_{}.vtu", states, name), state,
                        chain_of_contacts(force_chains(state), state.contacts.size()));
