@@ -2,11 +2,11 @@
 //
 // Every kReviewEvery steps:
 //   wake   a sleeper whose frozen forces, weight and the mean force of its awake neighbours are out
-//          of balance by more than wake_force of its load in the mean over wake_time, and with it
-//          along its frozen contacts every sleeper to which what is out of balance now passes on
-//          more than wake_force of its own load; or that is out of balance by more than wake_shock
-//          since the last review, alone: an elastic wave shakes a sleeper for a millisecond and
-//          leaves nothing behind; a load that has changed stays;
+//          of balance by more than wake_force of its load in the mean over wake_time, or by more
+//          than wake_shock since the last review, and with it along its frozen contacts every
+//          sleeper to which what is out of balance passes on more than wake_force of its own load.
+//          An elastic wave shakes a sleeper for a millisecond by more than wake_force and leaves
+//          nothing behind; a load that has changed stays;
 //          that an awake neighbour touches at more than wake_speed sqrt(g d); or that lies within
 //          wake_reach d v / sqrt(g d) of a grain that comes near sleepers (has one among its
 //          candidate pairs) at such a speed v: the grains on which it falls must give way, and what
@@ -109,11 +109,9 @@ class Review {
         const auto& mean = sleepers.add_to_mean(j, now, weight);
         // Also for nan.
         const bool shock = !(now.unbalanced(radius) <= sleep.wake_shock * now.load);
-        if (shock) {
+        if (shock || !(mean.unbalanced(radius) <= sleep.wake_force * mean.load)) {
           any |= wake_up(j);
-        } else if (!(mean.unbalanced(radius) <= sleep.wake_force * mean.load)) {
-          any |= wake_up(j);
-          any |= pass_on(j, now.force);
+          any |= pass_on(j, shock ? now.force : mean.force);
         } else if (look && sleepers.is_asleep(j)) {
           const double time = kReviewEvery * kLookEvery * world_.time_step;
           if (sleepers.creep(j, mean, radius, g, time) > kLookWay * 2 * radius) {
@@ -395,7 +393,7 @@ class Review {
             0.5 * world_.time_step * (sum.force.dot(b.velocity) + power_of(sum.torque, b.spin));
         world_.balance.stop(energy + rest, ids[i]);
       }
-      world_.sleepers.put_to_sleep(i, weight, {sum.force, sum.torque, sum.load()});
+      world_.sleepers.put_to_sleep(i, weight);
       b.velocity.setZero();
       b.spin = zero<SpinOf<dim>>();
       auto& memory = world_.grains.memory[i];

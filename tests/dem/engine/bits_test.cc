@@ -104,11 +104,11 @@ std::vector<Scene> scenes() {
       falling("SlenderAreaVerlet", 0x845090abc92e2737, Kind::slender, false, verlet),
       sleeping_pour("SleepingDisks", 0x446c3a6a6712cea6, Kind::disks, verlet),
       sleeping_pour("SleepingPolygons", 0xcbbb791be3505a60, Kind::polygons, verlet),
-      sleeping_pour("SleepingSlender", 0x55bcac5a28ba206d, Kind::slender, verlet),
+      sleeping_pour("SleepingSlender", 0xce16d2f9b27e0ab2, Kind::slender, verlet),
       sleeping_pour("SleepingPolygonsGear", 0xfbd40d34e881ccfb, Kind::polygons, gear),
       rough_floor("RoughFloorDisks", 0x418b2b8a0738b733, Kind::disks, false),
       rough_floor("RoughFloorPolygons", 0x6c8ceb4054570a88, Kind::polygons, false),
-      rough_floor("RoughFloorAsleep", 0x145a7a6e1f368899, Kind::polygons, true),
+      rough_floor("RoughFloorAsleep", 0x2731c45c2b08d29c, Kind::polygons, true),
   };
 }
 
