@@ -207,6 +207,7 @@ def main(words=None):
     given = options.parse_args(words)
     file = PREDICTIONS / f"{given.name}.json"
     if given.command == "make":
+        PREDICTIONS.mkdir(exist_ok=True)
         write_file(file, (json.dumps(predict(given.program.resolve(), given.states, given.run), indent=1) + "\n").encode())
         print(file)
         return 0
