@@ -195,10 +195,13 @@ def predictions(results: Results) -> str:
         for figure in ("dip", "axis_ratio"):
             miss = predicted(results, name, f"{model}.{figure}_miss", f"{model}.{figure}.piles")
             p_values[name, model, figure] = float(2 * stats.t.sf(abs(miss.value) / miss.error, miss.freedom))
+    p_values = {key: p for key, p in p_values.items() if math.isfinite(p)}
     corrected = dict(zip(p_values, holm(list(p_values.values()))))
 
     def cell(name: str, model: str, figure: str) -> str:
         told = predicted(results, name, f"{model}.{figure}", f"{model}.{figure}.piles")
+        if not math.isfinite(told.value):
+            return "no equilibrium found"
         p = corrected[name, model, figure]
         return f"{told.value:.3f} ± {told.error:.3f}, " + ("differs" if p < 0.05 else "within") + f" (p = {p:.2g})"
 
