@@ -121,7 +121,7 @@ class ContactNetwork {
   int dim_ = 2;
   int free_ = 0;
   double scale_ = 1;
-  /// What the next commit strains everything by: grains, those that are fixed too, and the cell.
+  /// The strain of the next commit, for grains, those that are fixed too, and the cell.
   Eigen::Matrix3d gradient_ = Eigen::Matrix3d::Zero();
 };
 

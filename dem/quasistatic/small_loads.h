@@ -1,4 +1,4 @@
-// What small loads on single grains change of a packing at rest, to first order: one tangent
+// Small loads on single grains of a packing at rest change it to first order: one tangent
 // stiffness, factorized once, and one right-hand side a load.
 //
 // No contact opens, closes or begins to slide under such a load: contacts that slide go on sliding,

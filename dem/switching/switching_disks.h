@@ -73,7 +73,7 @@ class SwitchingDisks {
     return energy().total() + losses().total() + tally_.lost - tally_.switched;
   }
 
-  /// As SoftDisks; those that were added are added before.
+  /// Bytes and their reading as of SoftDisks; disks that were added are added again before.
   std::string checkpoint() const;
   void restore(const std::string& checkpoint);
 

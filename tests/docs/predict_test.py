@@ -108,6 +108,13 @@ def test_a_prediction_that_is_not_committed_is_refused(tmp_path, monkeypatch):
         predict.main(["compare", "nowhere.h5", "--name", "none"])
 
 
+def test_a_prediction_is_kept_where_there_was_none(tmp_path, monkeypatch):
+    monkeypatch.setattr(predict, "PREDICTIONS", tmp_path / "predictions")
+    monkeypatch.setattr(predict, "predict", lambda *_: {"piles": []})
+    assert predict.main(["make", "program", "states.h5", "run", "--name", "first"]) == 0
+    assert json.loads((tmp_path / "predictions/first.json").read_text()) == {"piles": []}
+
+
 def test_stored_predictions_are_compared():
     """Every prediction has its comparison, of the commit that made it."""
     stored = json.loads(predict.STORED.read_text()) if predict.STORED.exists() else {}

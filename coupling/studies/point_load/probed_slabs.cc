@@ -10,7 +10,7 @@
 namespace grainfield::coupling {
 namespace {
 
-// As probed_packing(): the even part of the stress changes over the odd one.
+// The even part of the stress changes over the odd one, as in probed_packing().
 double nonlinear_share(const dem::StateProbes& probes) {
   double sum = 0, difference = 0;
   for (const dem::Probe& probe : probes.probes) {

@@ -154,8 +154,8 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
     probes(setup_) ? Base::enter(Is::probe) : begin_load();
   }
 
-  // What damped dynamics lack of rest, by Newton's method; where it fails they go on. Told to stop
-  // it leaves the run as it was.
+  // Newton's method brings the layer from near rest to rest; where it fails, damped dynamics go on.
+  // Told to stop it leaves the run as it was.
   void finish_rest() {
     std::optional<LayerByNewton> done;
     try {

@@ -5,8 +5,8 @@
 namespace grainfield::coupling {
 namespace {
 
-// Of 100 ensembles 87 or fewer hold a constant with probability 0.0015 where 95 % do, 0.99 where 80
-// % do.
+// The limit: 87 or fewer of 100 ensembles hold a constant with probability 0.0015 where 95 % do,
+// 0.97 where 80 % do.
 TEST(FitLong, IntervalsCoverTheTruth) {
   expect_coverage(seen(heap_models({kSlope, kRhoG, kHeight}), places(15)), truths(), places(15), 11,
                   100, 88);
