@@ -3,10 +3,9 @@
 // Every kReviewEvery steps:
 //   wake   a sleeper whose frozen forces, weight and the mean force of its awake neighbours are out
 //          of balance by more than wake_force of its load in the mean over wake_time, or by more
-//          than wake_shock since the last review, and with it along its frozen contacts every
-//          sleeper to which what is out of balance passes on more than wake_force of its own load.
-//          An elastic wave shakes a sleeper for a millisecond by more than wake_force and leaves
-//          nothing behind; a load that has changed stays;
+//          than wake_shock since the last review. An elastic wave shakes a sleeper for a
+//          millisecond by more than wake_force and leaves nothing behind; a load that has changed
+//          stays. Those behind it feel it only once it moves;
 //          that an awake neighbour touches at more than wake_speed sqrt(g d); or that lies within
 //          wake_reach d v / sqrt(g d) of a grain that comes near sleepers (has one among its
 //          candidate pairs) at such a speed v: the grains on which it falls must give way, and what
@@ -30,7 +29,6 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "dem/engine/flatten.h"
@@ -111,7 +109,6 @@ class Review {
         const bool shock = !(now.unbalanced(radius) <= sleep.wake_shock * now.load);
         if (shock || !(mean.unbalanced(radius) <= sleep.wake_force * mean.load)) {
           any |= wake_up(j);
-          any |= pass_on(j, shock ? now.force : mean.force);
         } else if (look && sleepers.is_asleep(j)) {
           const double time = kReviewEvery * kLookEvery * world_.time_step;
           if (sleepers.creep(j, mean, radius, g, time) > kLookWay * 2 * radius) {
@@ -130,36 +127,6 @@ class Review {
     return !world_.grains.is_fixed(j) &&
            world_.sleepers.set_asleep(j, false, world_.grains.bodies[j].position,
                                       world_.rotation(j), world_.steps);
-  }
-
-  /// Wakes along the network of frozen contacts: of a force that leaves grain `from` out of balance
-  /// each neighbour feels the part along the line of centres. What touches round it, and who of
-  /// them shares, is not asked: rather one too many wakes.
-  bool pass_on(int from, const typename World::Vector& force) {
-    const auto& bodies = world_.grains.bodies;
-    const auto& ids = world_.grains.ids;
-    bool any = false;
-    passed_.assign(1, {from, force});
-    while (!passed_.empty()) {
-      const auto [i, push] = passed_.back();
-      passed_.pop_back();
-      for (const int j : search_.near_sleepers(bodies[i].position, bodies[i].radius)) {
-        if (j == i || world_.grains.is_fixed(j) || !world_.sleepers.is_asleep(j) ||
-            !world_.sleepers.frozen.has(pair_key(ids[i], ids[j]))) {
-          continue;
-        }
-        typename World::Vector line = bodies[j].position - bodies[i].position;
-        if (world_.cell.is_periodic()) {
-          line += world_.cell.shift(world_.cell.nearest(bodies[i].position, bodies[j].position));
-        }
-        line.normalize();
-        const double part = push.dot(line);
-        if (!(part > world_.sleep.wake_force * world_.sleepers.rest(j).load())) continue;
-        any |= wake_up(j);
-        passed_.push_back({j, part * line});
-      }
-    }
-    return any;
   }
 
   /// Near a wall that moves: what it does to a sleeper would go unnoticed.
@@ -393,7 +360,7 @@ class Review {
             0.5 * world_.time_step * (sum.force.dot(b.velocity) + power_of(sum.torque, b.spin));
         world_.balance.stop(energy + rest, ids[i]);
       }
-      world_.sleepers.put_to_sleep(i, weight);
+      world_.sleepers.put_to_sleep(i, weight, {sum.force, sum.torque, sum.load()});
       b.velocity.setZero();
       b.spin = zero<SpinOf<dim>>();
       auto& memory = world_.grains.memory[i];
@@ -500,7 +467,6 @@ class Review {
     SpinOf<dim> spin = zero<SpinOf<dim>>();
   };
   std::vector<Moved> moved_;  // of those that fall asleep, with an energy balance
-  std::vector<std::pair<int, typename World::Vector>> passed_;
 };
 
 }  // namespace grainfield::dem

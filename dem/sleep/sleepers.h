@@ -124,14 +124,15 @@ class Sleepers {
     q.last_position = position;
     q.last_rotation = rotation;
   }
-  /// Falls asleep: from now on it carries this weight.
-  void put_to_sleep(int i, const Vector& weight) {
+  /// Falls asleep: from now on it carries this weight. Its mean residual begins with that at zero
+  /// velocity: in a single review later, awake neighbours may shake it by more than lasts.
+  void put_to_sleep(int i, const Vector& weight, const Residual& at_rest) {
     asleep_[i] = 1;
     rests_[i] = {};
     rests_[i].force = weight;
     rests_[i].force_sum = weight.norm();
     touches_[i] = {};
-    lasting_[i] = {};
+    lasting_[i] = at_rest;
     hidden_[i] = {};
   }
 
@@ -201,8 +202,8 @@ class Sleepers {
     return {rest.force + share * touch.force, rest.torque + share * touch.torque, mean.load()};
   }
   /// The residual `now` joins the mean over the last reviews with this weight, at most 1; returns
-  /// the mean, the weights of older ones falling exponentially. The first since it fell asleep is
-  /// its own mean.
+  /// the mean, the weights of older ones falling exponentially. Where there is no mean yet, it is
+  /// `now`.
   const Residual& add_to_mean(int i, const Residual& now, double weight) {
     Residual& mean = lasting_[i];
     if (!(mean.load > 0)) weight = 1;

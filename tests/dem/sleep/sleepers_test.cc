@@ -106,7 +106,7 @@ TEST(Sleepers, PlacesTurnInSpace) {
 TEST(Sleepers, KnowWhatLeavesThemOutOfBalance) {
   Plane2 s;
   s.add({0, 0}, 0, 0, false);
-  s.put_to_sleep(0, {0, -10});
+  s.put_to_sleep(0, {0, -10}, {});
   ContactForce<2> from_below;
   from_below.force = {0, 10};
   s.carry(0, from_below);
@@ -137,7 +137,6 @@ TEST(Sleepers, KnowWhatLeavesThemOutOfBalance) {
 TEST(Sleepers, RememberWhatStaysOutOfBalance) {
   Plane2 s;
   s.add({0, 0}, 0, 0, false);
-  s.put_to_sleep(0, {0, -10});
   const auto pushed = [](double force, double torque) {
     Plane2::Residual r;
     r.force = {force, 0};
@@ -145,7 +144,7 @@ TEST(Sleepers, RememberWhatStaysOutOfBalance) {
     r.load = 10;
     return r;
   };
-  EXPECT_EQ(s.add_to_mean(0, pushed(0, 0), 0.1).unbalanced(1), 0);
+  s.put_to_sleep(0, {0, -10}, pushed(0, 0));
   EXPECT_DOUBLE_EQ(s.add_to_mean(0, pushed(4, 2), 0.1).unbalanced(1), 0.6);
   EXPECT_NEAR(s.add_to_mean(0, pushed(-4, -2), 0.1).unbalanced(1), 0.06, 1e-12);
   double before = 0;
@@ -155,9 +154,11 @@ TEST(Sleepers, RememberWhatStaysOutOfBalance) {
     EXPECT_EQ(mean.load, 10);
     before = mean.force.x();
   }
-  EXPECT_NEAR(before, 4, 0.05);  // 4.06 e^-5 is missing
-  s.put_to_sleep(0, {0, -10});   // anew: nothing of before
-  EXPECT_DOUBLE_EQ(s.add_to_mean(0, pushed(1, 0), 0.1).unbalanced(1), 1);
+  EXPECT_NEAR(before, 4, 0.05);               // 4.06 e^-5 is missing
+  s.put_to_sleep(0, {0, -10}, pushed(1, 0));  // anew: nothing of before
+  EXPECT_DOUBLE_EQ(s.add_to_mean(0, pushed(11, 0), 0.1).unbalanced(1), 2);
+  s.add({0, 0}, 0, 0, true);  // added asleep: no mean yet
+  EXPECT_DOUBLE_EQ(s.add_to_mean(1, pushed(1, 0), 0.1).unbalanced(1), 1);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(s.add_to_mean(0, pushed(nan, 0), 0.1).unbalanced(1) < 1e300);
   // It is judged again until the mean is what is out of balance now.
@@ -173,7 +174,7 @@ TEST(Sleepers, JudgeAlikeInTurnedAxes) {
     const Eigen::Rotation2Dd turn(angle);
     Plane2 s;
     s.add({0, 0}, 0, 0, false);
-    s.put_to_sleep(0, turn * Eigen::Vector2d(0, -10));
+    s.put_to_sleep(0, turn * Eigen::Vector2d(0, -10), {});
     for (const Eigen::Vector2d& force : {Eigen::Vector2d(3, 6), Eigen::Vector2d(-2, 4)}) {
       ContactForce<2> f;
       f.force = turn * force;
@@ -200,7 +201,7 @@ TEST(Sleepers, JudgeAlikeInTurnedAxes) {
 TEST(Sleepers, AddUpWhatLeavesThemOutOfBalance) {
   Plane2 s;
   s.add({0, 0}, 0, 0, false);
-  s.put_to_sleep(0, {0, -10});
+  s.put_to_sleep(0, {0, -10}, {});
   Plane2::Residual r;
   r.load = 20;
   double way = 0;
@@ -209,7 +210,7 @@ TEST(Sleepers, AddUpWhatLeavesThemOutOfBalance) {
     way = s.creep(0, r, 1, 9.81, 1e-3);
   }
   EXPECT_LT(way, 1e-3);
-  s.put_to_sleep(0, {0, -10});
+  s.put_to_sleep(0, {0, -10}, {});
   r.force = {0.2, 0};
   for (int k = 0; k < 1000; ++k) way = s.creep(0, r, 1, 9.81, 1e-3);
   EXPECT_NEAR(way, 0.01 * 9.81 / 2, 2e-3 * way);
@@ -221,7 +222,7 @@ TEST(Sleepers, SleepAgainAfterALookOnlyWithHalfOfIt) {
   Plane2 s;
   s.add({0, 0}, 0, 0, false);
   EXPECT_EQ(s.sleeping_share(0, settings), 0.01);
-  s.put_to_sleep(0, {0, -10});
+  s.put_to_sleep(0, {0, -10}, {});
   Plane2::Residual r;
   r.load = 10;
   r.force = {0, 0.08};
