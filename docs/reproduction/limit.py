@@ -1,0 +1,325 @@
+#!/usr/bin/python3
+"""Prints the tables of docs/cases/boussinesq-limit.md, or puts them into the page, and draws its picture.
+
+    docs/reproduction/limit.py [--write] [--picture PICTURE] [--states FOLDER]
+
+Reads the runs of the LISTS in states/boussinesq/ and states/boussinesq-space/ (runs/next.py computes them): the
+figures in NAME.json, and on the axis NAME.profiles.csv where it is kept. A misfit is the root of the squared
+distance of the grains' mean from a prediction less the variance of that mean, over the root of the squared
+prediction; where it is within its noise, "<" and the upper end of 95 % stand for it. "–" has not run.
+--write replaces the tables of the page that have the same heads. Needs gnuplot for the picture.
+"""
+import argparse
+import csv
+import json
+import math
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+from scipy import stats
+
+HERE = pathlib.Path(__file__).resolve().parent
+PAGE = HERE.parent / "cases" / "boussinesq-limit.md"
+LISTS = ("boussinesq", "boussinesq-space")
+ROUGH = "rough"  # the base on which no contact slides
+HOMOGENEOUS, BY_DEPTH = f"homogeneous_{ROUGH}", f"by_depth_{ROUGH}"
+REGIONS = {"base": "on the base", "axis": "on the axis", "all": "of all profiles"}
+AT = 0.25  # of the depth: where the axis is looked at
+RIGHT = (2, 5, 10, 20)  # %
+COLOURS = {HOMOGENEOUS: "#1a5fa8", BY_DEPTH: "#c5502f"}
+POINTS = {0.0: 6, 0.2: 4, 0.5: 7, 1.0: 9}  # gnuplot's, by friction
+
+
+class Run:
+    """A finished run: its figures, what its settings say, and its axis."""
+
+    def __init__(self, folder, name, settings):
+        record = json.loads((folder / f"{name}.json").read_text())
+        self.name, self.summary, self.cpu = name, record["summary"], record["cpu_seconds"]
+        given = dict(s.split("=", 1) for s in settings)
+        self.friction = float(given.get("material.friction", 0.5))
+        self.grains = int(given.get("response.grains", 1))
+        self.shape = "spheres" if given.get("packing.dim") == "3" else {"irregular": "pentagons"}.get(
+            given.get("packing.shape"), "disks")
+        self.width = next((float(value) for key, value in given.items() if key.endswith("packing.width")), None)
+        file = folder / f"{name}.profiles.csv"
+        self.profiles = file.read_text() if file.exists() else ""
+
+    def number(self, key):
+        value = self.summary.get(key)
+        return math.nan if value is None or isinstance(value, str) else float(value)
+
+    @property
+    def layers(self):
+        return int(self.number("ensemble.realizations"))
+
+    @property
+    def depth(self):
+        return self.number("layer.depth_diameters")
+
+    @property
+    def force(self):
+        return self.number("load.force")
+
+    def misfit(self, model, region, kernel="w_depths"):
+        return Misfit(self, f"limit.{model}.{region}.{kernel}")
+
+    def axis(self, model, kernel):
+        """Grains over the model on the axis at AT, and its standard error; nan where it is not kept."""
+        for row in csv.DictReader(line for line in self.profiles.splitlines() if not line.startswith("#")):
+            width = float(re.search(r"w = (\S+) m", row["profile"])[1])
+            if not row["profile"].startswith(f"depth_{AT:g},") or abs(float(row["x_m"])) > 1e-9:
+                continue
+            if (abs(width / self.number("layer.depth") - 0.1) < 1e-3) == (kernel == "w_depths"):
+                value = {part: float(row[key]) for key in row for part in ("simulation", "standard_error", model)
+                         if re.fullmatch(rf"{part}_N/m2?", key)}
+                return value["simulation"] / value[model], value["standard_error"] / value[model]
+        first = f"compare.{model}.peak"  # of the first profile, which is at AT and at fixed width over d
+        if kernel == "w_diameters" and first in self.summary:
+            return (self.number("response.peak") / self.number(first),
+                    self.number("response.peak.standard_error") / self.number(first))
+        return math.nan, math.nan
+
+
+class Misfit:
+    """The misfit beyond noise of limit.*, %."""
+
+    def __init__(self, run, key):
+        self.squared, error, noise = (run.number(f"{key}.{name}") for name in ("squared", "squared.standard_error", "noise"))
+        self.bound = 100 * run.number(f"{key}.right_to")
+        least = run.layers - 1
+        self.known = math.isfinite(self.squared) and math.isfinite(self.bound)
+        #: of the square: the jackknife's, and that of one mode of noise, as the bound has it
+        scatter = math.hypot(error, math.sqrt(2) * noise)
+        self.resolved = self.known and self.squared > stats.t.ppf(0.95, least) * scatter
+        self.value = 100 * math.sqrt(max(self.squared, 0)) if self.known else math.nan
+        self.error = 100 * error / 2 / math.sqrt(self.squared) if self.resolved else math.nan
+        self.low = 100 * math.sqrt(max(self.squared - error, 0)) if self.known else math.nan
+        self.high = 100 * math.sqrt(max(self.squared + error, 0)) if self.known else math.nan
+
+    def cell(self):
+        if not self.known:
+            return "–"
+        if not self.resolved:
+            return f"< {shown(self.bound)}"
+        digits = 0 if self.error >= 2 else 1
+        return f"{self.value:.{digits}f} ± {self.error:.{digits}f}"
+
+    def right(self):
+        """The smallest of RIGHT that the bound is below, or that there is none."""
+        if not self.known:
+            return "–"
+        return next((f"{x} %" for x in RIGHT if self.bound < x), "not resolved")
+
+
+def shown(value):
+    """Two digits."""
+    return f"{value:.0f}" if value >= 10 else f"{value:.1f}"
+
+
+def percent(value, error=math.nan):
+    if not math.isfinite(value):
+        return "–"
+    if not math.isfinite(error):
+        return f"{100 * value:.1f} %"
+    return f"{100 * value:.1f} ± {100 * error:.1f} %"
+
+
+def read_list(file):
+    """Names and settings of a list of runs/next.py."""
+    lines = (shlex.split(line, comments=True) for line in file.read_text().splitlines())
+    return [(words[0], words[3:]) for words in lines if len(words) > 2]
+
+
+def finished(states):
+    """The runs that are there, by depth and friction."""
+    runs = []
+    for name in LISTS:
+        listed = HERE / "runs" / f"{name}.txt"
+        for run, settings in read_list(listed) if listed.exists() else []:
+            if (states / name / f"{run}.json").exists():
+                runs.append(Run(states / name, run, settings))
+    return sorted(runs, key=lambda run: (run.shape, run.depth, run.friction, run.grains))
+
+
+def usual(runs):
+    """Those of the usual width under a load on one grain."""
+    return [run for run in runs if run.grains == 1 and run.width is None]
+
+
+def table(head, rows):
+    """Of Markdown; nothing without rows."""
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
+
+
+def of(run):
+    """What layer it is, as the first cells of every table."""
+    return [f"{run.depth:.1f}" + ("" if run.shape == "disks" else f" ({run.shape})"), f"{run.friction:g}"]
+
+
+def misfits(runs):
+    head = ["depth / d", "μ", "layers"]
+    for region in REGIONS.values():
+        head += [f"{region}: one stiffness", "by depth"]
+    rows = []
+    for run in usual(runs):
+        pairs = [run.misfit(model, region).cell() for region in REGIONS for model in (HOMOGENEOUS, BY_DEPTH)]
+        rows.append(of(run) + [f"{run.layers}"] + pairs + [run.misfit(BY_DEPTH, "all").right()])
+    return table(head + ["right to"], rows)
+
+
+def bases(runs):
+    head = ["depth / d", "μ", "half space", "layer, smooth base", "layer, rough base", "the judge's words", "position"]
+    rows = []
+    for run in usual(runs):
+        models = ("by_depth_half_space", "by_depth_smooth", BY_DEPTH)
+        at, error = run.number("verdict.position"), run.number("verdict.position_error")
+        place = f"{at:.2f} ± {error:.2f}" if 0 <= at <= 1 else "beyond"
+        rows.append(of(run) + [run.misfit(model, "base").cell() for model in models] + [words(run), place])
+    return table(head, rows)
+
+
+def words(run):
+    """What the judge says of layer and half space."""
+    said = re.search(r" %\)?\. (.+?)(?: \(\d+ layers[^)]*\))?\. ", run.summary.get("verdict.sentence", ""))
+    return said[1] if said else "–"
+
+
+def melan(depth, at, nu):
+    """What a load this far below the free surface of a half plane adds to the stress on the axis at AT, over that
+    of a load on the surface (Melan 1932; nu: of the plane)."""
+    z, c = at, depth
+    if not 0 < c < z:
+        return math.nan
+    straight = 1 / (z - c) + ((z + c) ** 2 + 2 * c * z) / (z + c) ** 3
+    other = 1 / (z - c) + (3 * z + c) / (z + c) ** 2
+    # With m = 1 / nu: (m + 1) / (2 m) and (m - 1) / (4 m), over the 2 / z of the surface.
+    return z / 2 * ((1 + nu) / 2 * straight + (1 - nu) / 4 * other) - 1
+
+
+def causes(runs):
+    head = ["depth / d", "excess over one stiffness, w = 1.5 d", "due to stiffness by depth",
+            "due to the load's place in the grain", "load on 3 grains", "on 10 grains", "w = 0.1 h",
+            "due to stiffness by depth, w = 0.1 h"]
+    rows = []
+    plain = {run.name.replace("-mu-0.5", ""): run for run in usual(runs) if run.friction == 0.5 and run.shape == "disks"}
+    for name, run in plain.items():
+        cells = [of(run)[0]]
+        for kernel in ("w_diameters", "w_depths"):
+            whole, parts = run.axis(HOMOGENEOUS, kernel), run.axis(BY_DEPTH, kernel)
+            cells.append(percent(whole[0] - 1, whole[1]))
+            cells.append(percent(whole[0] / parts[0] - 1))
+            if kernel == "w_diameters":
+                below = run.number("layer.depth") - run.number("load.y")
+                cells.append(percent(melan(below, AT * run.number("layer.depth"), run.number("moduli.nu_v"))))
+                for grains in (3, 10):
+                    more = next((r for r in runs if r.name == f"{name}-grains-{grains}"), None)
+                    value = more.axis(HOMOGENEOUS, kernel) if more else (math.nan, math.nan)
+                    cells.append(percent(value[0] - 1, value[1]))
+        rows.append(cells)
+    return table(head, rows)
+
+
+def linearity(runs):
+    head = ["depth / d", "μ", "load in weights of a disk", "contacts that close", "open", "begin to slide",
+            "peaks at 0.25, 0.5, 0.75 h and on the base", "E at the base over that at the surface"]
+    rows = []
+    for run in usual(runs):
+        shares = [percent(run.number(f"linearity.{name}"), run.number(f"linearity.{name}.standard_error"))
+                  for name in ("gained", "lost", "sliding")]
+        places = ("depth_0.25", "depth_0.5", "depth_0.75", "base")
+        peaks = ", ".join(f"{run.number(f'response.{place}_w_depths.peaks'):.0f}" for place in places)
+        rows.append(of(run) + [f"{run.number('linearity.weights'):.0f}", *shares, peaks,
+                               f"{run.number('moduli.growth'):.2f}"])
+    return table(head, rows)
+
+
+def costs(runs):
+    head = ["depth / d", "μ", "disks in a layer", "layers", "CPU min", "deposit and load",
+            "rest, moduli, response", "finite elements", "memory (MB)"]
+    rows = []
+    for run in usual(runs):
+        dem, fe, all_analysis = (run.number(f"time.{name}") for name in ("dem_cpu_s", "continuum_s", "analysis_s"))
+        rows.append(of(run) + [f"{run.number('dem.grains'):.0f}", f"{run.layers}", shown(run.cpu / 60), shown(dem / 60),
+                               shown((all_analysis - fe) / 60), shown(fe / 60), f"{run.number('memory.peak_MB'):.0f}"])
+    return table(head, rows)
+
+
+TABLES = (misfits, bases, causes, linearity, costs)
+
+
+def replaced(text, made):
+    """The text with each table whose head is that of a made one in its place."""
+    for new in made:
+        head = new.partition("\n")[0]
+        if head not in text:
+            sys.exit(f"{PAGE}: no table with the head \"{head}\"")
+        before, _, rest = text.partition(head)
+        after = re.sub(r"\A\n(\|.*\n)*", "", rest)
+        text = before + new + after
+    return text
+
+
+def block(name, rows):
+    return f"${name} << EOD\n" + "".join(" ".join(f"{x:.6g}" for x in row) + "\n" for row in rows) + "EOD\n"
+
+
+def draw(runs, picture):
+    """Three panels of misfit against depth, w = 0.1 h, and one of all profiles with w = 1.5 d."""
+    panels = [(region, "w_depths", f"{title}, w = 0.1 h") for region, title in REGIONS.items()]
+    panels.append(("all", "w_diameters", "of all profiles, w = 1.5 d"))
+    data, plots = "", ""
+    wide = max((run.depth for run in usual(runs)), default=10) * 1.25
+    most = 0.0
+    for number, (region, kernel, title) in enumerate(panels):
+        curves = []
+        for shift, model in ((0.97, HOMOGENEOUS), (1.03, BY_DEPTH)):
+            for friction, point in POINTS.items():
+                rows = []
+                for run in usual(runs):
+                    if run.friction == friction and run.shape == "disks":
+                        m = run.misfit(model, region, kernel)
+                        if m.known:
+                            rows.append((run.depth * shift, m.value, m.low, max(m.high, m.value)))
+                            most = max(most, m.high)
+                if not rows:
+                    continue
+                name = f"p{number}{model}{str(friction).replace('.', '')}".replace("_", "")
+                data += block(name, rows)
+                word = "one stiffness" if model == HOMOGENEOUS else "stiffness by depth"
+                told = f"title '{word}, μ = {friction:g}'" if number == 0 else "notitle"
+                curves.append(f"${name} using 1:2:3:4 with yerrorbars pt {point} ps 0.7 lc rgb '{COLOURS[model]}' {told}")
+                curves.append(f"${name} using 1:2 with lines lc rgb '{COLOURS[model]}' notitle")
+        if curves:
+            plots += f"set title 'Misfit {title}'\nplot " + ", ".join(curves) + "\nunset key\n"
+    if not plots:
+        sys.exit("limit.py: no run has ended; nothing to draw")
+    head = (f'set terminal svg size 900,760 background "white" font "sans,13"\nset output "{picture}"\n'
+            "set multiplot layout 2,2\nset logscale x\nset xtics (8, 15, 30, 60, 120)\nset grid\n"
+            f"set xrange [6:{wide:g}]\nset yrange [0:{1.1 * most:g}]\nset xlabel 'depth / mean diameter'\n"
+            "set ylabel 'misfit (%)'\nset key top right font ',10'\n")
+    subprocess.run(["gnuplot"], input=data + head + plots + "unset multiplot\n", check=True, text=True)
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("--states", type=pathlib.Path, default=HERE / "states")
+    options.add_argument("--picture", type=pathlib.Path)
+    options.add_argument("--write", action="store_true", help="put the tables into the page")
+    given = options.parse_args()
+    runs = finished(given.states)
+    made = [one(runs) for one in TABLES]
+    if given.picture:
+        draw(runs, given.picture)
+    elif given.write:
+        PAGE.write_text(replaced(PAGE.read_text(), made))
+    else:
+        print("\n".join(made), end="")
+
+
+if __name__ == "__main__":
+    main()
