@@ -277,8 +277,9 @@ def draw(runs, picture):
     most = 0.0
     for number, (region, kernel, title) in enumerate(panels):
         curves = []
-        for shift, model in ((0.97, HOMOGENEOUS), (1.03, BY_DEPTH)):
-            for friction, point in POINTS.items():
+        for side, model in ((-1, HOMOGENEOUS), (1, BY_DEPTH)):
+            for place, (friction, point) in enumerate(POINTS.items()):
+                shift = 1 + side * (0.01 + 0.015 * place)  # points of equal depth stand side by side
                 rows = []
                 for run in usual(runs):
                     if run.friction == friction and run.shape == "disks":
@@ -290,18 +291,19 @@ def draw(runs, picture):
                     continue
                 name = f"p{number}{model}{str(friction).replace('.', '')}".replace("_", "")
                 data += block(name, rows)
-                word = "one stiffness" if model == HOMOGENEOUS else "stiffness by depth"
-                told = f"title '{word}, μ = {friction:g}'" if number == 0 else "notitle"
+                told = f"title 'μ = {friction:g}'" if number == 0 and model == HOMOGENEOUS else "notitle"
                 curves.append(f"${name} using 1:2:3:4 with yerrorbars pt {point} ps 0.7 lc rgb '{COLOURS[model]}' {told}")
                 curves.append(f"${name} using 1:2 with lines lc rgb '{COLOURS[model]}' notitle")
         if curves:
-            plots += f"set title 'Misfit {title}'\nplot " + ", ".join(curves) + "\nunset key\n"
+            plots += f"set title 'Misfit {title}'\nplot " + ", ".join(curves) + "\nunset key\nunset label\n"
     if not plots:
         sys.exit("limit.py: no run has ended; nothing to draw")
-    head = (f'set terminal svg size 900,760 background "white" font "sans,13"\nset output "{picture}"\n'
-            "set multiplot layout 2,2\nset logscale x\nset xtics (8, 15, 30, 60, 120)\nset grid\n"
+    head = (f'set terminal svg size 960,800 background "white" font "sans,13"\nset output "{picture}"\n'
+            "set multiplot layout 2,2 margins 0.08,0.99,0.07,0.88 spacing 0.08,0.13\nset logscale x\nset xtics (8, 15, 30, 60, 120)\nset grid\n"
             f"set xrange [6:{wide:g}]\nset yrange [0:{1.1 * most:g}]\nset xlabel 'depth / mean diameter'\n"
-            "set ylabel 'misfit (%)'\nset key top right font ',10'\n")
+            "set ylabel 'misfit (%)'\nset key top right\n"
+            f"set label 1 'one stiffness' at screen 0.3,0.96 center tc rgb '{COLOURS[HOMOGENEOUS]}'\n"
+            f"set label 2 'stiffness by depth' at screen 0.75,0.96 center tc rgb '{COLOURS[BY_DEPTH]}'\n")
     subprocess.run(["gnuplot"], input=data + head + plots + "unset multiplot\n", check=True, text=True)
 
 
