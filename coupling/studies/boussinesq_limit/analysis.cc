@@ -9,6 +9,7 @@
 #include <fstream>
 #include <limits>
 
+#include "coupling/averaging/ensemble.h"
 #include "coupling/observe/seen_models.h"
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/ensemble.h"
