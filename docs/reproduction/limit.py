@@ -68,20 +68,36 @@ class Run:
         return Misfit(self, f"limit.{model}.{region}.{kernel}")
 
     def axis(self, model, kernel):
-        """Grains over the model on the axis at AT, and its standard error; nan where it is not kept."""
+        """On the axis at each depth over h: grains, their standard error, the model; {} where it is not kept."""
+        out = {}
         for row in csv.DictReader(line for line in self.profiles.splitlines() if not line.startswith("#")):
-            width = float(re.search(r"w = (\S+) m", row["profile"])[1])
-            if not row["profile"].startswith(f"depth_{AT:g},") or abs(float(row["x_m"])) > 1e-9:
-                continue
-            if (abs(width / self.number("layer.depth") - 0.1) < 1e-3) == (kernel == "w_depths"):
-                value = {part: float(row[key]) for key in row for part in ("simulation", "standard_error", model)
-                         if re.fullmatch(rf"{part}_N/m2?", key)}
-                return value["simulation"] / value[model], value["standard_error"] / value[model]
+            width = float(re.search(r"w = (\S+) m", row["profile"])[1]) / self.number("layer.depth")
+            if abs(float(row["x_m"])) < 1e-9 and (abs(width - 0.1) < 1e-3) == (kernel == "w_depths"):
+                values = [float(row[next(key for key in row if re.fullmatch(rf"{part}_N/m2?", key))])
+                          for part in ("simulation", "standard_error", model)]
+                out[round(float(row["depth_m"]) / self.number("layer.depth"), 3)] = values
         first = f"compare.{model}.peak"  # of the first profile, which is at AT and at fixed width over d
-        if kernel == "w_diameters" and first in self.summary:
-            return (self.number("response.peak") / self.number(first),
-                    self.number("response.peak.standard_error") / self.number(first))
-        return math.nan, math.nan
+        if not out and kernel == "w_diameters" and first in self.summary:
+            return {AT: [self.number(key) for key in ("response.peak", "response.peak.standard_error", first)]}
+        return out
+
+    def excess(self, model, kernel, at=AT):
+        """Of the grains over the model on the axis, and its standard error; nan where it is not kept."""
+        grains, error, own = self.axis(model, kernel).get(at, [math.nan] * 3)
+        return grains / own - 1, error / own
+
+    def shift(self, model, kernel, at):
+        """By how much less deep than h AT, over d, the model has the grains' stress on the axis, and its error."""
+        axis = self.axis(model, kernel)
+        if at not in axis or len(axis) < 2:
+            return math.nan, math.nan
+        depths = sorted(axis)
+        k = depths.index(at)
+        low, high = depths[max(k - 1, 0)], depths[min(k + 1, len(depths) - 1)]
+        slope = math.log(axis[low][2] / axis[high][2]) / math.log(high / low)  # of the model's decay there
+        value, error = self.excess(model, kernel, at)
+        z = at * self.depth
+        return z * (1 - (1 + value) ** (-1 / slope)), z / slope * error / (1 + value)
 
 
 class Misfit:
@@ -189,38 +205,29 @@ def words(run):
     return said[1] if said else "–"
 
 
-def melan(depth, at, nu):
-    """What a load this far below the free surface of a half plane adds to the stress on the axis at AT, over that
-    of a load on the surface (Melan 1932; nu: of the plane)."""
-    z, c = at, depth
-    if not 0 < c < z:
-        return math.nan
-    straight = 1 / (z - c) + ((z + c) ** 2 + 2 * c * z) / (z + c) ** 3
-    other = 1 / (z - c) + (3 * z + c) / (z + c) ** 2
-    # With m = 1 / nu: (m + 1) / (2 m) and (m - 1) / (4 m), over the 2 / z of the surface.
-    return z / 2 * ((1 + nu) / 2 * straight + (1 - nu) / 4 * other) - 1
+def shifted(value):
+    """A shift of shift()."""
+    return f"{value[0]:.2f} ± {value[1]:.2f}" if math.isfinite(value[0]) else "–"
 
 
 def causes(runs):
-    head = ["depth / d", "excess over one stiffness, w = 1.5 d", "due to stiffness by depth",
-            "due to the load's place in the grain", "load on 3 grains", "on 10 grains", "w = 0.1 h",
-            "due to stiffness by depth, w = 0.1 h"]
+    head = ["depth / d", "excess over one stiffness, w = 0.1 h", "over stiffness by depth", "w = 1.5 d",
+            "load on 3 disks, w = 0.1 h", "on 10 disks", "shift / d at 0.25 h", "at 0.5 h", "at 0.75 h",
+            "depth / d of the loaded centres"]
     rows = []
-    plain = {run.name.replace("-mu-0.5", ""): run for run in usual(runs) if run.friction == 0.5 and run.shape == "disks"}
-    for name, run in plain.items():
+    for run in usual(runs):
+        if run.friction != 0.5 or run.shape != "disks":
+            continue
         cells = [of(run)[0]]
-        for kernel in ("w_diameters", "w_depths"):
-            whole, parts = run.axis(HOMOGENEOUS, kernel), run.axis(BY_DEPTH, kernel)
-            cells.append(percent(whole[0] - 1, whole[1]))
-            cells.append(percent(whole[0] / parts[0] - 1))
-            if kernel == "w_diameters":
-                below = run.number("layer.depth") - run.number("load.y")
-                cells.append(percent(melan(below, AT * run.number("layer.depth"), run.number("moduli.nu_v"))))
-                for grains in (3, 10):
-                    more = next((r for r in runs if r.name == f"{name}-grains-{grains}"), None)
-                    value = more.axis(HOMOGENEOUS, kernel) if more else (math.nan, math.nan)
-                    cells.append(percent(value[0] - 1, value[1]))
-        rows.append(cells)
+        cells += [percent(*run.excess(model, kernel)) for model, kernel in (
+            (HOMOGENEOUS, "w_depths"), (BY_DEPTH, "w_depths"), (HOMOGENEOUS, "w_diameters"))]
+        for grains in (3, 10):
+            name = run.name.replace("-mu-0.5", f"-grains-{grains}")
+            more = next((other for other in runs if other.name == name), None)
+            cells.append(percent(*more.excess(HOMOGENEOUS, "w_depths")) if more else "–")
+        cells += [shifted(run.shift(BY_DEPTH, "w_depths", at)) for at in (0.25, 0.5, 0.75)]
+        below = run.number("response.load_depth") / run.number("layer.mean_diameter")
+        rows.append(cells + [f"{below:.2f}" if math.isfinite(below) else "–"])
     return table(head, rows)
 
 
