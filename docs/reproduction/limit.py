@@ -162,8 +162,9 @@ def finished(states):
 
 
 def usual(runs):
-    """Those of the usual width under a load on one grain."""
-    return [run for run in runs if run.grains == 1 and run.width is None]
+    """Those of the usual width under a load on one grain; of a run and its larger ensemble NAME-more the latter."""
+    names = {run.name for run in runs}
+    return [run for run in runs if run.grains == 1 and run.width is None and f"{run.name}-more" not in names]
 
 
 def table(head, rows):
@@ -174,7 +175,9 @@ def table(head, rows):
 
 def of(run):
     """What layer it is, as the first cells of every table."""
-    return [f"{run.depth:.1f}" + ("" if run.shape == "disks" else f" ({run.shape})"), f"{run.friction:g}"]
+    wide = f"{run.number('dem.layer_width') / run.number('layer.depth'):.0f} depths wide" if run.width else ""
+    what = ", ".join(word for word in (run.shape, wide) if word not in ("", "disks"))
+    return [f"{run.depth:.1f}" + (f" ({what})" if what else ""), f"{run.friction:g}"]
 
 
 def misfits(runs):
@@ -182,7 +185,7 @@ def misfits(runs):
     for region in REGIONS.values():
         head += [f"{region}: one stiffness", "by depth"]
     rows = []
-    for run in usual(runs):
+    for run in usual(runs) + [run for run in runs if run.width is not None]:
         pairs = [run.misfit(model, region).cell() for region in REGIONS for model in (HOMOGENEOUS, BY_DEPTH)]
         rows.append(of(run) + [f"{run.layers}"] + pairs + [run.misfit(BY_DEPTH, "all").right()])
     return table(head + ["right to"], rows)
