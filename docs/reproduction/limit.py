@@ -296,7 +296,7 @@ def draw(runs, picture):
                         m = run.misfit(model, region, kernel)
                         if m.known:
                             rows.append((run.depth * shift, m.value, m.low, max(m.high, m.value)))
-                            most = max(most, m.high)
+                            most = max(most, m.high if m.resolved else 0)
                 if not rows:
                     continue
                 name = f"p{number}{model}{str(friction).replace('.', '')}".replace("_", "")
@@ -310,7 +310,7 @@ def draw(runs, picture):
         sys.exit("limit.py: no run has ended; nothing to draw")
     head = (f'set terminal svg size 960,800 background "white" font "sans,13"\nset output "{picture}"\n'
             "set multiplot layout 2,2 margins 0.08,0.99,0.07,0.88 spacing 0.08,0.13\nset logscale x\nset xtics (8, 15, 30, 60, 120)\nset grid\n"
-            f"set xrange [6:{wide:g}]\nset yrange [0:{1.1 * most:g}]\nset xlabel 'depth / mean diameter'\n"
+            f"set xrange [6:{wide:g}]\nset yrange [0:{1.15 * most or 100:g}]\nset xlabel 'depth / mean diameter'\n"
             "set ylabel 'misfit (%)'\nset key top right\n"
             f"set label 1 'one stiffness' at screen 0.3,0.96 center tc rgb '{COLOURS[HOMOGENEOUS]}'\n"
             f"set label 2 'stiffness by depth' at screen 0.75,0.96 center tc rgb '{COLOURS[BY_DEPTH]}'\n")
