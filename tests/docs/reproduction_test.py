@@ -14,6 +14,7 @@ sys.path.insert(0, str(ROOT / "docs/reproduction"))
 
 import collect  # noqa: E402
 import causes  # noqa: E402
+import limit  # noqa: E402
 import measure  # noqa: E402
 import rve_scatter as scatter  # noqa: E402
 import page as maker  # noqa: E402
@@ -842,3 +843,56 @@ def test_the_table_of_causes_names_what_is_missing(tmp_path):
     assert line == "| from 0.02 on, μ = 0.5 | about 1 | 0.918 ± 0.003 | – | – | – | 0.950 |"
     assert len({line.count("|") for line in causes.table(Results(tmp_path)).splitlines()}) == 1
     assert causes.table(RESULTS) in (ROOT / "docs/cases/wellmann-box.md").read_text(), "causes.py prints it"
+
+
+def layers_under_loads(tmp_path, name, settings, profiles="", **summary):
+    figures = {"ensemble.realizations": 8, "layer.depth": 0.1, "layer.depth_diameters": 10, **summary}
+    (tmp_path / f"{name}.json").write_text(json.dumps({"summary": figures, "cpu_seconds": 60}))
+    (tmp_path / f"{name}.profiles.csv").write_text(profiles)
+    return limit.Run(tmp_path, name, settings)
+
+
+def test_a_misfit_by_depth_is_told_with_its_error_or_its_bound(tmp_path):
+    def misfit(squared, error, noise, right_to):
+        key = "limit.by_depth_rough.base.w_depths"
+        return layers_under_loads(tmp_path, "a", [], **{
+            f"{key}.squared": squared, f"{key}.squared.standard_error": error, f"{key}.noise": noise,
+            f"{key}.right_to": right_to}).misfit("by_depth_rough", "base")
+
+    clear = misfit(0.01, 0.001, 0.001, 0.117)
+    assert (clear.cell(), clear.right()) == ("10.0 ± 0.5", "20 %")
+    within_noise = misfit(0.0001, 0.001, 0.001, 0.0431)
+    assert (within_noise.cell(), within_noise.right()) == ("< 4.3", "5 %")
+    assert misfit(-0.0001, 0.05, 0.001, 0.3).right() == "not resolved"
+    assert misfit(None, None, None, None).cell() == "–"
+
+
+def test_a_load_that_acts_deeper_is_found_on_the_axis(tmp_path):
+    """Grains that have 1 / (z - 0.005) where the model has 1 / z: half a diameter."""
+    head = "profile,depth_m,x_m,simulation_N/m,standard_error_N/m,by_depth_rough_N/m\n"
+    lines = [f'"depth, w = 0.01 m",{z},{x},{1 / (z - 0.005 * (x == 0))},0.001,{1 / z}\n'
+             for z in (0.025, 0.05, 0.075, 0.1) for x in (0, 0.01)]
+    run = layers_under_loads(tmp_path, "b", ["material.friction=0.2"], head + "".join(lines))
+    for at in (0.25, 0.5, 0.75):
+        assert run.shift("by_depth_rough", "w_depths", at)[0] == pytest.approx(0.5)
+    assert run.excess("by_depth_rough", "w_depths") == pytest.approx((0.25, 0.001 * 0.025))
+    assert limit.math.isnan(run.excess("by_depth_rough", "w_diameters")[0])
+    assert run.friction == 0.2
+
+
+def test_larger_ensembles_take_the_place_of_smaller_ones(tmp_path):
+    runs = [layers_under_loads(tmp_path, name, settings) for name, settings in (
+        ("deep-8-mu-0", []), ("deep-8-mu-0-more", []), ("deep-8-grains-3", ["response.grains=3"]),
+        ("deep-8-wide", ["variant.deep_8.packing.width=1"]), ("deep-8-pentagons", ["packing.shape=irregular"]))]
+    assert [run.name for run in limit.usual(runs)] == ["deep-8-mu-0-more", "deep-8-pentagons"]
+    assert [run.shape for run in runs][-2:] == ["disks", "pentagons"]
+
+
+def test_the_page_of_layers_of_growing_depth_has_the_tables_of_its_runs():
+    """Runs that ended after it was written may be missing."""
+    runs = limit.finished(limit.HERE / "states")
+    page = limit.PAGE.read_text()
+    for one in limit.TABLES:
+        made = one(runs).splitlines()
+        table = page[page.index(made[0]):].partition("\n\n")[0].splitlines()
+        assert len(table) > 2 and set(table) <= set(made), "docs/reproduction/limit.py --write"
