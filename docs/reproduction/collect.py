@@ -170,6 +170,26 @@ def figures_of(name, record, states, rves, height):
     return {key: float(value) for key, value in numbers.items() if math.isfinite(value)}
 
 
+def read_runs(listed):
+    """The figures of the finished runs of a list by (name, number)."""
+    folder, out = HERE / "states" / listed.stem, {}
+    for run, *_ in read_list(listed)[1]:
+        file, packed = folder / f"{run}.json", folder / f"{run}.h5.xz"
+        if file.exists():
+            tables = (folder / f"{run}.{table}.csv" for table in ("states_of_realizations", "rve"))
+            name, _, number = run.rpartition("-")
+            out[name, number] = figures_of(name, json.loads(file.read_text()),
+                                           *(read_columns(table) if table.exists() else None for table in tables),
+                                           lid_height(packed) if packed.exists() else None)
+    return out
+
+
+def mean_of(figures, name, key, numbers):
+    """The mean over packings, None where one lacks it."""
+    values = [figures.get((name, number), {}).get(key) for number in numbers]
+    return None if not values or None in values else float(numpy.mean(values))
+
+
 def standard_error(values):
     return float(numpy.std(values, ddof=1) / math.sqrt(len(values)))
 
@@ -231,17 +251,8 @@ def main():
     if not listed.is_file():
         fail(f"{listed}: no such list")
     tag, planned = read_list(listed)
-    folder, figures, cases = HERE / "states" / listed.stem, {}, set()
-    for name, _, case, _ in planned:
-        file = folder / f"{name}.json"
-        if file.exists():
-            tables = (folder / f"{name}.{table}.csv" for table in ("states_of_realizations", "rve"))
-            packed = folder / f"{name}.h5.xz"
-            test, _, number = name.rpartition("-")
-            figures[test, number] = figures_of(test, json.loads(file.read_text()),
-                                               *(read_columns(table) if table.exists() else None for table in tables),
-                                               lid_height(packed) if packed.exists() else None)
-            cases.add(case)
+    figures, ended = read_runs(listed), HERE / "states" / listed.stem
+    cases = {case for name, _, case, _ in planned if (ended / f"{name}.json").exists()}
     if len(cases) != 1:
         fail(f"{listed}: found finished runs of {len(cases)} cases; allowed: one case")
     case, joined = cases.pop(), collect([(test, of) for (test, _), of in figures.items()])
