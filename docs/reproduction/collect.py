@@ -28,6 +28,8 @@ Runs of one NUMBER load the same packing. For every pair of a row of figures/wel
 packings of the difference, KEY.TO_less_FROM, and of the ratio, KEY.TO_over_FROM, with their standard errors; for two
 keys of one NAME these are TO_less_FROM.NAME and TO_over_FROM.NAME.
 
+Keys that begin with one of KEPT are another script's, and stay (slip_through.py).
+
 Ends with 2 if no run of the list has ended. Needs h5py and numpy.
 """
 import argparse
@@ -54,11 +56,13 @@ RVE, SET, STRAIN = 5, 0.02, 0.04
 BARS = (5, 7)  # radii of error_bar_at_0.04
 QUASISTATIC = 1e-3  # kinetic over elastic energy (Wellmann figure 5)
 EDGE = 0.001  # m, Wellmann's unit of length
+KEPT = "slip_through."
 #: The keys that this script adds to those of a summary.
 ADDED = ("q_over_p_at_0.02", "q_over_p_at_0.04", "pressure_at_0.04", "quasistatic_from",
          *(f"shear_stiffness.{part}" for part in PARTS),
          *(f"strain_slope.{part}" for part in ("early", "middle", "late")), "strain_ratio_at_0.04", "rve_stiffening_late",
-         *(f"error_bar_at_0.04.r{radius}" for radius in BARS), "other_shear_stress", "lid_height")
+         *(f"error_bar_at_0.04.r{radius}" for radius in BARS), "other_shear_stress", "lid_height",
+         "slip_through.largest_miss")
 TOLERANCE = 1e-3  # of the strain at which a state is recorded
 
 
@@ -263,7 +267,10 @@ def main():
         command += f" --name {given.name}"
     joined |= {"case.name": case, "case.command": command, "version": tag, "ensemble.realizations": most}
     name = given.name or case
-    write_file(HERE / "results" / f"{name}.json", (json.dumps(joined, indent=1, sort_keys=True) + "\n").encode())
+    file = HERE / "results" / f"{name}.json"
+    if file.exists():
+        joined |= {key: value for key, value in json.loads(file.read_text()).items() if key.startswith(KEPT)}
+    write_file(file, (json.dumps(joined, indent=1, sort_keys=True) + "\n").encode())
     print(f"{name}.json: {len(figures)} of {len(planned)} runs")
 
 
