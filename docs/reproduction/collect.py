@@ -22,6 +22,7 @@ and KEY.most.NAME, as in the summary of a sweep. The recorded states add ADDED:
         of the loading, over that in the second one (as Wellmann's figure 10)
     other_shear_stress: of a NAME that begins with shear_, the larger of |sigma_xy| and |sigma_yz| over |sigma_xz| at
         the end of the loading
+    sliding_share: sliding contacts over all, in the last state
     lid_height: of a run that left its states, the distance of the walls across z at the start, over EDGE
 
 Runs of one NUMBER load the same packing. For every pair of a row of figures/wellmann.toml there is the mean over
@@ -61,7 +62,7 @@ KEPT = "slip_through."
 ADDED = ("q_over_p_at_0.02", "q_over_p_at_0.04", "pressure_at_0.04", "quasistatic_from",
          *(f"shear_stiffness.{part}" for part in PARTS),
          *(f"strain_slope.{part}" for part in ("early", "middle", "late")), "strain_ratio_at_0.04", "rve_stiffening_late",
-         *(f"error_bar_at_0.04.r{radius}" for radius in BARS), "other_shear_stress", "lid_height",
+         *(f"error_bar_at_0.04.r{radius}" for radius in BARS), "other_shear_stress", "sliding_share", "lid_height",
          "slip_through.largest_miss")
 TOLERANCE = 1e-3  # of the strain at which a state is recorded
 
@@ -163,6 +164,8 @@ def figures_of(name, record, states, rves, height):
     """The finite numbers of a run by key."""
     numbers = {key: value for key, value in record["summary"].items() if isinstance(value, (int, float))
                and not key.startswith(("ensemble.", "time.", "memory."))}
+    if numbers.get("dem.contacts"):
+        numbers["sliding_share"] = numbers["dem.sliding_contacts"] / numbers["dem.contacts"]
     numbers["time.cpu_s"] = record["cpu_seconds"]
     if states is not None:
         numbers |= shear_figures(states) if name.startswith("shear_") else compression_figures(states)
