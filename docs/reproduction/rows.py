@@ -4,9 +4,10 @@ A row is a number or a word. A number has `range`, the source's value with its r
 `key`, ours; `effect` is what a ratio's distance from 1 says in the source. A word comes from a number by
 `limits`, or from a rule by name; `agrees` lists the words of ours that agree with the source's. A row that
 has no result says in `gap` why: "not run", or "not measured" where no study has such a figure. A word
-with `single` has no error over realizations, and decides nothing. `cause` says why a row differs, or what
-was tried; a row that does not differ does not show it. A number with `piles` is tested: that many piles of the
-source gave its value, so its mean has an error, too, which is taken by the scatter of ours; `alternative` is the
+with `single` has no error over realizations, and decides nothing. `cause` says why a row differs, and
+"{KEY@MEMBER}" in it becomes that number; a row that does not differ does not show it. Where a study has CAUSES, the
+row adds what it becomes when one thing changes, or, without a cause, says "cause not found; tried: ...". A number
+with `piles` is tested: that many piles of the source gave its value, so its mean has an error, too, which is taken by the scatter of ours; `alternative` is the
 value that the row is to tell from it.
 """
 from __future__ import annotations
@@ -627,11 +628,21 @@ def tried_of(row: Row, results: Results) -> list[str]:
     return out
 
 
+def filled(cause: str, row: Row, results: Results) -> str:
+    """A cause with its numbers."""
+
+    def number(name: re.Match[str]) -> str:
+        found = results.number(row["study"], name[1], name[2])
+        return "not run" if found is None else number_text(found, {})
+
+    return re.sub(r"\{([\w.]+)@(\w+)\}", number, cause)
+
+
 def cause_of(row: Row, said: str, results: Results) -> str:
     """Why ours differs, and what was tried: "; ..." behind the agreement, or nothing."""
     if not said.startswith("differs"):
         return ""
-    parts, tried = [row["cause"]] if "cause" in row else [], tried_of(row, results)
+    parts, tried = [filled(row["cause"], row, results)] if "cause" in row else [], tried_of(row, results)
     if tried:
         before = "" if "tried: " in "".join(parts) else "tried: " if parts else "cause not found; tried: "
         parts.append(before + ", ".join(tried))

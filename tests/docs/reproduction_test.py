@@ -894,6 +894,7 @@ def test_a_row_says_what_was_tried(tmp_path):
     assert said(tried, cause="cause: c").startswith("cause: c; tried: denser packing 4.000, ")
     assert said(tried, cause="cause not found; tried: d") == (
         "cause not found; tried: d; denser packing 4.000, smooth walls 3.000 ± 0.200")
+    assert said({}, cause="cause: {k@m}, {k@n}") == "cause: 5.000 ± 0.100, not run"
     # A run to 0.04 says nothing of a longer one's end.
     assert said({"k.m_slow": 4}) == "cause not found; tried: nothing yet"
     assert said({"k.m": 5, "k.m_dense": 2}, study="box-shear") == ""
