@@ -948,7 +948,7 @@ def test_the_tables_of_causes_name_what_is_missing(tmp_path):
 
     assert line(causes.causes(results, names), "strain of RVEs over the imposed one, up to 0.02") == (
         "| strain of RVEs over the imposed one, up to 0.02, μ = 0.5 | about 1 | 0.740 ± 0.003 |  | – |  | – |  | 0.95 |")
-    assert line(causes.figures(results), "axial strain of RVEs of radius 5").endswith("| 0.740 ± 0.003 | 3 |")
+    assert line(causes.figures(results), "strain of RVEs of radius 5").endswith("| 0.740 ± 0.003 | 3 |")
     made = causes.steps({("hertz_05", "1"): {"q_over_p_at_0.04": 1.25}, ("hertz_05", "2"): {"q_over_p_at_0.04": 9.0}},
                         {("hertz_05_tight", "1"): {"q_over_p_at_0.04": 1.5}})
     assert line(made, "q/p at 0.04") == "| q/p at 0.04 | 1.2500 | – | – | 1.5000 |"
