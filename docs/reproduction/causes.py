@@ -21,6 +21,7 @@ sys.path.insert(0, str(HERE / "runs"))
 from collect import mean_of, read_runs  # noqa: E402
 from next import read_list  # noqa: E402
 from record import write_file  # noqa: E402
+from rows import SHORT, WITHIN_SHORT  # noqa: E402
 from summaries import Measured, Results  # noqa: E402
 
 PAGE = HERE.parent / "cases/wellmann-box.md"
@@ -120,7 +121,8 @@ def causes(results, names):
         cells = [cell(results.number(BASE, key, member), digits)]
         for change in CHANGES:
             name = change if member == "packing" else f"{member}_{change}"
-            cells.append(cell(results.number(CAUSES, key, name), digits) if name in names else "")
+            alike = change not in SHORT or WITHIN_SHORT.search(key)
+            cells.append(cell(results.number(CAUSES, key, name), digits) if name in names and alike else "")
         out += f"| {what} | {source} | " + " | ".join(cells) + " |\n"
     return out
 

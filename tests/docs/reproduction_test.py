@@ -939,8 +939,10 @@ def test_the_tables_of_causes_name_what_is_missing(tmp_path):
     (tmp_path / "wellmann-box.json").write_text(json.dumps({
         "strain_slope.early.hertz_05": 0.74, "strain_slope.early.standard_error.hertz_05": 0.003,
         "ensemble.realizations.hertz_05": 3}))
-    (tmp_path / "wellmann-box-causes.json").write_text(json.dumps({"strain_slope.early.hertz_05_slow": 0.95}))
-    results, names = Results(tmp_path), {f"hertz_05_{one}" for one in ("dense", "smooth", "slow")}
+    (tmp_path / "wellmann-box-causes.json").write_text(json.dumps({
+        "strain_slope.early.hertz_05_slow": 0.95, "sample.plastic_strain.hertz_0_slow": 0.02}))
+    results = Results(tmp_path)
+    names = {f"hertz_05_{one}" for one in ("dense", "smooth", "slow")} | {"hertz_0_slow", "hertz_0_dense"}
 
     def line(table, start):
         assert len({one.count("|") for one in table.splitlines()}) == 1
@@ -948,6 +950,8 @@ def test_the_tables_of_causes_name_what_is_missing(tmp_path):
 
     assert line(causes.causes(results, names), "strain of RVEs over the imposed one, up to 0.02") == (
         "| strain of RVEs over the imposed one, up to 0.02, μ = 0.5 | about 1 | 0.740 ± 0.003 |  | – |  | – |  | 0.95 |")
+    # A run to 0.04 leaves another plastic strain.
+    assert line(causes.causes(results, names), "plastic strain").endswith("| – |  | – |  |  |  |  |")
     assert line(causes.figures(results), "strain of RVEs of radius 5").endswith("| 0.740 ± 0.003 | 3 |")
     made = causes.steps({("hertz_05", "1"): {"q_over_p_at_0.04": 1.25}, ("hertz_05", "2"): {"q_over_p_at_0.04": 9.0}},
                         {("hertz_05_tight", "1"): {"q_over_p_at_0.04": 1.5}})
