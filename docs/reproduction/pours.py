@@ -57,7 +57,7 @@ OF_ALL_BASES = ("axis", "dip", "inside")
 #: In the order of the list, as a reader says them.
 WORDS = {"tangential_11": "tangential over normal stiffness 11 (2/7)", "layers": "in horizontal layers",
          "broad": "source within ± 6 mean radii (± 0.5)",
-         "follow": "source 2 diameters above the top (fixed, 0.25 m)", "friction_0.9": "friction 0.9 (0.54)",
+         "follow": "source 2 diameters above the top", "friction_0.9": "friction 0.9 (0.54)",
          "equal": "equal sizes (± 30 %)", "fall": "from 0.5 m (0.25 m)", "energy": "law `energy` (`overlap_area`)",
          "friction_0.3": "friction 0.3 (0.54)", "corners_24": "24 corners (6 to 8)",
          "stiff": "grains ten times stiffer"}
