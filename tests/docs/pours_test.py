@@ -23,12 +23,12 @@ def ensemble(count, axis=0.55, dip=0.0):
 
 
 def test_as_many_piles_as_are_told_see_the_effect():
-    """In four of five ensembles, by t; with one pile less in fewer than that."""
+    """In four of five ensembles, by t; the sum of both quantiles asks for a pile or two more."""
     count = pours.piles_to_see(0.1, 0.08)
     drawn = GENERATOR.normal(0.08, 0.1, (4000, count))
     t = drawn.mean(axis=1) / (drawn.std(axis=1, ddof=1) / count**0.5)
     seen = (2 * stats.t.sf(abs(t), count - 1) < pours.LEVEL).mean()
-    assert seen == pytest.approx(pours.POWER, abs=0.03)
+    assert pours.POWER - 0.02 < seen < pours.POWER + 0.06
     assert pours.piles_to_see(0.1, 1e-5) is None and pours.piles_to_see(1e-6, 0.08) == 3
     assert pours.piles_for_error(0.1, 0.016) == 40  # (0.1 / 0.016)^2 = 39.06
 
