@@ -86,7 +86,7 @@ def test_small_piles_count_by_their_errors():
     together, p = pours.small_piles({"point source, 300 grains": known(0.1, 16, 0.4), "point source, 800 grains": known(0.0, 16, 0.2),
                                      "point source, 6,500 grains": known(9, 16, 0.1), "layers, 6,300 grains": known(9, 16, 0.1)})
     assert together.value == pytest.approx(0.02) and together.error == pytest.approx(0.05 * 2 / 5**0.5) and together.freedom == 30
-    assert p == pytest.approx(2 * stats.t.sf(0.06 / together.error, 30))
+    assert p == pytest.approx(2 * stats.t.sf(0.06 / numpy.hypot(together.error, pours.DIP_ERROR), 30))
 
 
 def test_pours_without_states_are_in_the_table():
