@@ -58,6 +58,7 @@ neigh_modify delay 0 every 1 check yes exclude type 2 2
 timestep {step}
 group grains type 1
 group floor type 2
+set group floor density/disc {density}
 fix weight grains gravity 9.81 vector 0 -1 0
 fix move grains nve/sphere disc
 fix still floor freeze
