@@ -57,6 +57,22 @@ def test_a_change_is_beyond_chance_and_chance_is_not():
     assert line.count("**") == 2
 
 
+def test_causes_are_corrected_for_all_of_a_column_and_see_what_all_planned_ones_leave():
+    """Each by itself is beyond chance (p = 0.02), among eleven none is; three more that are planned make them blinder."""
+    spread = numpy.linspace(-1, 1, 8)
+    scale = spread.std(ddof=1)
+    base = {figure: numpy.tile(spread, 5) for figure in pours.FIGURES}
+    shift = scale * (1 / 8 + 1 / 40) ** 0.5 * 2.9
+    found = {name: {figure: spread + shift for figure in pours.FIGURES} for name in pours.WORDS}
+    alone = pours.compared(found["equal"]["dip"], base["dip"])[1]
+    assert 0.01 < alone < 0.05
+    by, p, seen = pours.judged_causes(base, found)["equal"]["dip"]
+    assert p == pytest.approx(11 * alone) and by.value == pytest.approx(shift)
+    nothing = {figure: numpy.array([]) for figure in pours.FIGURES}
+    more = pours.judged_causes(base, found | {f"planned_{k}": nothing for k in range(3)})["equal"]["dip"]
+    assert more[1] == pytest.approx(11 * alone) and more[2] > seen
+
+
 def test_causes_that_have_not_run_are_named_and_no_test_counts_them():
     base, nothing = ensemble(40), {figure: numpy.array([]) for figure in pours.FIGURES}
     found = {"equal": ensemble(8), "fall": ensemble(2), "stiff": nothing}
