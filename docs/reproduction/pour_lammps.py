@@ -6,9 +6,10 @@
 An independent code with the law `linear`: the same springs, dashpots and friction, a rough floor of disks side by side,
 and one grain every INTERVAL, which comes near the axis with the speed of a fall from HEIGHT. LAMMPS lets no grain sleep.
 A pile leaves FOLDER/disks-GRAINS-SEED.h5, by `grainfield import`, and the same as NAME.h5.xz, compacted. A pile that is
-there is not poured again. Prints for each the processor time, and its figures by the program and by heaps.py.
+there is not poured again. Prints for each the processor time, and its figures by the program and by heaps.py. Those of
+2,000 disks belong into states/lammps (then states/verify.py --write), where pours.py finds them.
 
-The same piles by grainfield, with these numbers of the grains and the pour (--case prints the command):
+The same piles by grainfield are those of runs/disks.txt; --case prints the command of one:
 
     docs/reproduction/pour_lammps.py --case [--grains 2000]
 

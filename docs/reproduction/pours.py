@@ -44,6 +44,8 @@ POURS = (
     ("point source, 2,000 grains", ("pile-point-source-2000", "piles/point-2000-*")),
     ("point source, 6,500 grains", ("piles/point-6500-*",)),
     ("elliptic grains from a point, 800", ("memory/elliptic-800-*",)),
+    ("disks from a point, 2,000", ("disks/disks-2000-*",)),
+    ("disks from a point in LAMMPS, 2,000", ("lammps/disks-2000-*",)),
     ("layers, 6,300 grains", ("pile-line-source",)),
     ("shifted layers, 6,500 grains", ("pile-asymmetric-line",)),
 )

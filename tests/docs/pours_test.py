@@ -115,3 +115,20 @@ def test_the_heaps_of_stored_states_are_found():
     found = pours.measured(("pile-rest-300-awake",))
     assert len(found["dip"]) == 24 and 0.3 < found["axis"].mean() < 0.8
     assert len(pours.measured(("no-such-pile-*",))["dip"]) == 0
+
+
+def test_the_list_of_disks_pours_what_lammps_pours():
+    import pour_lammps
+    _, runs = pours.read_list(pours.CAUSES.with_name("disks.txt"))
+    case = {"shape.radius": "0.00275", "shape.polydispersity": "0.3", "source.interval": "0.1", "source.speed": "0.2",
+            "material.density": "5000", "material.friction": "0.54"}  # of pile-point-source.toml
+    text = (ROOT / "cases/pile-point-source.toml").read_text()
+    for key, value in case.items():
+        assert f"{key.partition('.')[2]} = {value}" in text
+    wanted = {key: str(value) for key, value in pour_lammps.settings(2000).items()}
+    assert len(runs) == 16
+    for _, _, name, settings in runs:
+        given = case | dict(one.split("=", 1) for one in settings)
+        assert name == "pile-point-source" and set(given) == set(wanted)
+        for key, value in wanted.items():
+            assert given[key] == value or float(given[key]) == float(value), key
