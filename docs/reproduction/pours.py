@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """What stored piles say of the dip: all pours, and piles of 800 grains of which one thing was changed.
 
-    docs/reproduction/pours.py            table of the pours whose states are kept
+    docs/reproduction/pours.py            table of all pours
     docs/reproduction/pours.py causes     table of the causes of runs/pile-causes.txt, of the piles that are there
 
-Both read the states (states/*.h5.xz) and measure as heaps.py does: sigma_xx / sigma_yy on the axis, shoulder less
+Both read the states (states/*.h5.xz), or else results/*.json, and measure as heaps.py does: sigma_xx / sigma_yy on the axis, shoulder less
 centre of the pressure in the windows of dip.difference, at the base (over rho g h) and a quarter of the height above it
 (over that of the part above), volume fraction and slope. A cell is the mean over piles with its standard error.
 
@@ -49,10 +49,11 @@ POURS = (
     ("layers, 6,300 grains", ("pile-line-source",)),
     ("shifted layers, 6,500 grains", ("pile-asymmetric-line",)),
 )
-#: Studies whose states are lost, of which results/ has the difference; as their pages say, they slept by other rules.
-LOST = (("point source, 6,500 grains, other sleep", "pile-point-source"),
-        ("elliptic grains from a point, 6,500, other sleep", "pile-elliptic"),
-        ("moving point source, 6,500 grains, other sleep", "pile-asymmetric-point"))
+#: Studies of which results/ has the difference alone: states are lost or not kept. They slept by other rules.
+RECORDED = (("equal disks from a point, 968, other sleep", "liffman-dropped"),
+            ("point source, 6,500 grains, other sleep", "pile-point-source"),
+            ("elliptic grains from a point, 6,500, other sleep", "pile-elliptic"),
+            ("moving point source, 6,500 grains, other sleep", "pile-asymmetric-point"))
 BASE = ("memory/memory-800-*", "pile-rest-800-awake", "pile-rest-800-sleeping")
 FIGURES = ("axis", "dip", "inside", "fraction", "slope")
 OF_ALL_BASES = ("axis", "dip", "inside")
@@ -137,15 +138,15 @@ def pours(folder=STATES):
     return {what: one for what, one in found.items() if len(one["dip"]) >= LEAST}
 
 
-def lost_pours(results):
-    """{what: shoulder less centre} of LOST."""
-    return {what: one for what, study in LOST if (one := results.number(study, "dip.difference")) is not None}
+def recorded_pours(results):
+    """{what: shoulder less centre} of RECORDED."""
+    return {what: one for what, study in RECORDED if (one := results.number(study, "dip.difference")) is not None}
 
 
-def pours_table(found, lost):
+def pours_table(found, recorded):
     lines = [["pour", "piles", "σxx/σyy on the axis", "shoulder − centre (ρgh)", "a quarter of the height above",
               "p, no dip and no peak", "the same, Holm", f"piles for ± {ERROR}", f"piles that see {DIP}"]]
-    dips = {what: mean_of(one["dip"]) for what, one in found.items()} | lost
+    dips = {what: mean_of(one["dip"]) for what, one in found.items()} | recorded
     alone = [float(2 * stats.t.sf(abs(one.value) / one.error, one.freedom)) for one in dips.values()]
     for (what, one), p, corrected in zip(dips.items(), alone, holm(alone)):
         scatter = one.error * math.sqrt(one.freedom + 1)
@@ -241,7 +242,7 @@ def main(words=None):
         print()
         return 0
     found = pours()
-    print(pours_table(found, lost_pours(Results(HERE / "results"))), end="")
+    print(pours_table(found, recorded_pours(Results(HERE / "results"))), end="")
     together, p = small_piles(found)
     print(f"\nAll piles of up to 2,000 grains from a point: {together.value:.3f} ± {together.error:.3f}; p = {p:.1g} "
           f"of a true difference of {DIP} ± {DIP_ERROR}")
