@@ -7,7 +7,8 @@ An independent code with the law `linear`: the same springs, dashpots and fricti
 and one grain every INTERVAL, which comes near the axis with the speed of a fall from HEIGHT. LAMMPS lets no grain sleep.
 A pile leaves FOLDER/disks-GRAINS-SEED.h5, by `grainfield import`, and the same as NAME.h5.xz, compacted. A pile that is
 there is not poured again. Prints for each the processor time, and its figures by the program and by heaps.py. Those of
-2,000 disks belong into states/lammps (then states/verify.py --write), where pours.py finds them.
+2,000 disks belong into states/lammps (then states/verify.py --write), where pours.py finds them. LAMMPS took 21 s of
+processor time for 300 disks, and would take some 15 minutes for 2,000.
 
 The same piles by grainfield are those of runs/disks.txt; --case prints the command of one:
 
