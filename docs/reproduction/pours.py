@@ -39,7 +39,7 @@ STATES = HERE / "states"
 CAUSES = HERE / "runs/pile-causes.txt"
 #: what, the files of its states. A file holds one pile or more.
 POURS = (
-    ("point source, 300 grains", ("pile-rest-300-awake", "pile-rest-300-sleeping")),
+    ("point source, 300 grains", ("pile-rest-300-awake",)),  # those asleep slept by older rules
     ("point source, 800 grains", ("pile-rest-800-awake", "pile-rest-800-sleeping", "memory/memory-800-*")),
     ("point source, 2,000 grains", ("pile-point-source-2000", "piles/point-2000-*")),
     ("point source, 6,500 grains", ("piles/point-6500-*",)),
