@@ -29,6 +29,7 @@ OPEN_ROWS = 8
 MISSING_FIGURES = 0
 #: Figures of each source, by chapter where they are numbered so.
 FIGURES = {"Roul": {1: 12, 2: 10, 3: 32, 4: 9, 5: 17}, "Wellmann": 17, "Liffman": 20}
+TABLES = {"Roul": {"table 1", "table 2", "table 5.1"}, "Wellmann": {"table 1"}, "Liffman": set()}
 
 
 @pytest.fixture
@@ -92,6 +93,8 @@ def test_the_list_of_the_sources_figures_is_whole():
         kinds = ("results", "sketches", "pictures", "others")
         found = [one for kind in kinds for one in listed[source][kind] if one.startswith("fig.")]
         assert sorted(found) == sorted(every), source
+        tables = [one for kind in (*kinds, "parameters") for one in listed[source][kind] if not one.startswith("fig.")]
+        assert len(tables) == len(set(tables)) and set(tables) == TABLES[source], source
 
 
 def test_every_figure_of_the_sources_has_a_row():
