@@ -160,15 +160,15 @@ strain mono_rough_3 rough_3 0
 strain mono_rough_300 rough_300 0
 strain mono_rough_3-varied rough_3_varied {0..7}
 
-# Tails of P(n): layers of runs/boussinesq.txt (forces by the overlap's area) and runs/tails.txt (linear springs).
+# Tails of P(n): layers of runs/tails.txt, forces by the overlap's area and linear springs.
 tails() { # FILE MEMBER
-  [ -e "$here/states/$1.h5.xz" ] || return 0
-  xz -dkc "$here/states/$1.h5.xz" > "tails-$2.h5"
+  [ -e "$here/states/tails/$1.h5.xz" ] || return 0
+  xz -dkc "$here/states/tails/$1.h5.xz" > "tails-$2.h5"
   measure tails point-load-polydisperse "tails-$2.h5" --member "$2"
 }
 for mu in 0 0.2 0.5 1; do
-  tails "boussinesq/deep-8-mu-$mu" "area_$mu"
-  tails "tails/linear-mu-$mu" "linear_$mu"
+  tails "area-mu-$mu" "area_$mu"
+  tails "linear-mu-$mu" "linear_$mu"
 done
 
 flamant='compare.models=["flamant"]'
