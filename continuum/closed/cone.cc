@@ -91,10 +91,10 @@ std::array<double, 6> in_space(double x, double y, double z, double tangent, dou
   const auto [rr, zz, rz] = reduced(r * tangent / depth);
   const double unit = rho_g * depth;
   const double shear = r > 0 ? unit * rz / r : 0;
-  // s_rr - s_tt, which is 0 on the axis.
-  const double more = r > 0 ? unit * zz_in_tt * (rr - zz) / (r * r) : 0;
+  const double more = unit * zz_in_tt * (rr - zz);  // s_rr - s_tt, which is 0 on the axis
   const double tt = -unit * (rr + zz_in_tt * (zz - rr));
-  return {tt - more * x * x, tt - more * y * y, -unit * zz, shear * y, shear * x, 0 - more * x * y};
+  const double c = r > 0 ? x / r : 0, d = r > 0 ? y / r : 0;
+  return {tt - more * c * c, tt - more * d * d, -unit * zz, shear * y, shear * x, 0 - more * c * d};
 }
 
 }  // namespace
