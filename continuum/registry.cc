@@ -34,6 +34,7 @@ std::vector<ModelInfo> shipped_models() {
                              ife_info(),
                              cone_osl_info(),
                              cone_fpa_info(),
+                             cone_fpa_levy_info(),
                              cone_bcc_info(),
                              osl_layer_info(),
                              orthotropic_half_plane_info(),

@@ -7,6 +7,8 @@
 #include <boost/numeric/odeint/stepper/generation/make_dense_output.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "continuum/closed/models.h"
 #include "continuum/constants.h"
@@ -22,10 +24,10 @@ constexpr double kLast = 1e-4;  // t nearest to S0; nearer the equations are 0/0
 constexpr double kStep = (1 - kLast) / (kNodes - 1);
 constexpr double kTolerance = 1e-13;  // of the integration, per step
 
+template <class Cone>
 class ConeModel : public Model {
  public:
-  ConeModel(double phi, const Closure& closure, double rho_g)
-      : cone_(phi, closure, rho_g), phi_(phi) {}
+  ConeModel(double phi, Cone cone) : cone_(std::move(cone)), phi_(phi) {}
 
   Stresses stress(const Points& points) override {
     Stresses out(points.rows(), 6);
@@ -56,7 +58,7 @@ class ConeModel : public Model {
   }
 
  private:
-  OslCone cone_;
+  Cone cone_;
   double phi_;
 };
 
@@ -73,7 +75,26 @@ std::vector<Figure> figures() {
 template <class Chosen>
 std::unique_ptr<Model> cone(const Settings& s, const Chosen& closure) {
   const double phi = number_of(s, "phi_deg") * kDegree;
-  return std::make_unique<ConeModel>(phi, closure(phi), number_of(s, "rho_g"));
+  return std::make_unique<ConeModel<OslCone>>(phi,
+                                              OslCone(phi, closure(phi), number_of(s, "rho_g")));
+}
+
+/// Stress in the project's axes of a cone without size by its reduced stress at S (rr, zz, rz) and
+/// the share of s_zz in s_tt, whose other part is s_rr. z up changes the sign of rz, tension that
+/// of all.
+template <class Reduced>
+std::array<double, 6> in_space(double x, double y, double z, double tangent, double rho_g,
+                               double zz_in_tt, const Reduced& reduced) {
+  const double r = std::hypot(x, y), depth = -z;
+  if (!(depth >= 0 && r * tangent <= depth)) return {kNan, kNan, kNan, kNan, kNan, kNan};
+  if (depth == 0) return {0, 0, 0, 0, 0, 0};
+  const auto [rr, zz, rz] = reduced(r * tangent / depth);
+  const double unit = rho_g * depth;
+  const double shear = r > 0 ? unit * rz / r : 0;
+  const double more = unit * zz_in_tt * (rr - zz);  // s_rr - s_tt, which is 0 on the axis
+  const double tt = -unit * (rr + zz_in_tt * (zz - rr));
+  const double c = r > 0 ? x / r : 0, d = r > 0 ? y / r : 0;
+  return {tt - more * c * c, tt - more * d * d, -unit * zz, shear * y, shear * x, 0 - more * c * d};
 }
 
 }  // namespace
@@ -148,15 +169,33 @@ std::array<double, 3> OslCone::reduced(double S) const {
 }
 
 std::array<double, 6> OslCone::stress(double x, double y, double z) const {
-  const double r = std::hypot(x, y), depth = -z;
-  if (!(depth >= 0 && r * tangent_ <= depth)) return {kNan, kNan, kNan, kNan, kNan, kNan};
-  if (depth == 0) return {0, 0, 0, 0, 0, 0};
-  const auto [rr, zz, rz] = reduced(r * tangent_ / depth);
-  const double unit = rho_g_ * depth;
-  // s_tt = s_rr: the same in every direction across. z up changes the sign of rz, tension that of
-  // all.
-  const double shear = r > 0 ? unit * rz / r : 0;
-  return {-unit * rr, -unit * rr, -unit * zz, shear * y, shear * x, 0};
+  return in_space(x, y, z, tangent_, rho_g_, 0, [&](double S) { return reduced(S); });
+}
+
+LevyCone::LevyCone(double phi, double rho_g)
+    : phi_(phi),
+      tangent_(std::tan(phi)),
+      rho_g_(rho_g),
+      closure_{1, -2 * tangent_},
+      singular_(tangent_ * closure_.c1()) {}
+
+std::array<double, 3> LevyCone::reduced(double S) const {
+  const double c = tangent_, sine = std::sin(phi_), cosine = std::cos(phi_);
+  double p = 1 - std::numbers::pi / 2 * sine * (1 - 1.5 * S);
+  double q = std::numbers::pi / 4 * cosine * S;
+  if (S > singular_) {
+    const double u = std::asin(std::min(1.0, sine * (1 / S - 1)));
+    const double cubed = cosine * cosine * cosine;
+    const double integral = (u + std::sin(u) * std::cos(u)) / (2 * sine * cosine);
+    const double D = (S - singular_) * (S - c * closure_.c2());
+    p = 1 - cubed * (D * std::sqrt(D) / (S * S) + 2 * c * c * (1 - 1.5 * S) * integral);
+    q = cubed * c * S * integral;
+  }
+  return {p + closure_.mu * q, p, q};
+}
+
+std::array<double, 6> LevyCone::stress(double x, double y, double z) const {
+  return in_space(x, y, z, tangent_, rho_g_, 0.5, [&](double S) { return reduced(S); });
 }
 
 ModelInfo cone_osl_info() {
@@ -178,6 +217,19 @@ ModelInfo cone_fpa_info() {
           {friction_angle(), weight()},
           [](const Settings& s) {
             return cone(s, [](double phi) { return Closure{1, -2 * std::tan(phi)}; });
+          },
+          figures()};
+}
+
+ModelInfo cone_fpa_levy_info() {
+  return {"cone_fpa_levy",
+          "cone with fixed principal axes as cone_fpa, but sigma_tt = (sigma_rr + sigma_zz)/2 "
+          "(Levy)",
+          3,
+          {friction_angle(), weight()},
+          [](const Settings& s) -> std::unique_ptr<Model> {
+            const double phi = number_of(s, "phi_deg") * kDegree;
+            return std::make_unique<ConeModel<LevyCone>>(phi, LevyCone(phi, number_of(s, "rho_g")));
           },
           figures()};
 }

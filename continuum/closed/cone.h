@@ -43,4 +43,33 @@ class OslCone {
   std::vector<std::array<double, 2>> value_, slope_;
 };
 
+/// Fixed principal axes (s_rr = s_zz - 2 c s_rz) with Lévy's assumption s_tt = (s_rr + s_zz)/2 as
+/// second closure (Pipatpongsa and Siriteerakul 2010). The solution in closed form is ours. The
+/// equations become
+///   c p' - (2 c^2 + S) q' + q - c^2 q/S = 0,  c q' + p - S p' + c q/S = 1.
+/// They are solved by (1, 0), the other field by (1 - 3/2 S, -S/(2c)) and, since the Wronskian is
+/// D^(3/2)/S with D = S^2 + 2 c^2 S - c^2, by reduction of order. From the surface to S0, D = 0,
+///   p = 1 - cos^3(phi) (D^(3/2)/S^2 + 2 c^2 (1 - 3/2 S) I),  q = cos^3(phi) c S I,
+///   I = integral of sqrt(D)/s^3 from S to 1 = (1 + c^2)/(2c) (u + sin u cos u),
+///   sin u = sin(phi) (1/S - 1),
+/// and from S0 to the axis p = 1 - pi/2 sin(phi) (1 - 3/2 S), q = pi/4 cos(phi) S.
+class LevyCone {
+ public:
+  /// phi in rad, above 0 and below pi/2.
+  LevyCone(double phi, double rho_g);
+
+  /// s_rr, s_zz, s_rz over rho g z at S, 0 <= S <= 1; s_tt is the mean of the first two.
+  std::array<double, 3> reduced(double S) const;
+  /// As OslCone::stress().
+  std::array<double, 6> stress(double x, double y, double z) const;
+
+  double singular() const { return singular_; }  ///< S0
+  const Closure& closure() const { return closure_; }
+
+ private:
+  double phi_, tangent_, rho_g_;
+  Closure closure_;
+  double singular_;
+};
+
 }  // namespace grainfield::continuum

@@ -19,6 +19,7 @@ ModelInfo bcc_info();
 ModelInfo ife_info();
 ModelInfo cone_osl_info();
 ModelInfo cone_fpa_info();
+ModelInfo cone_fpa_levy_info();
 ModelInfo cone_bcc_info();
 ModelInfo osl_layer_info();
 ModelInfo orthotropic_half_plane_info();

@@ -27,6 +27,11 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
     strain    of layers, by a field of `grainfield strain` each, on one grid: strain.peaks is the largest number of
               peaks of the mean vertical strain at the depths DEPTHS, strain.width_ratio the width at the last over
               that at the first
+    tails     of the packing of layers before it is loaded: how often forces n above their mean are, n the normal force
+              of a contact between grains deeper than DEPTHS[0] of the layer, over a line fitted to all against the
+              depth. With the share above n as exp(-c (n^a - 1)), n > 1, tails.exponent is a by maximum likelihood (1 of
+              an exponential tail, 2 of a Gaussian one), of all layers together with its error by the jackknife;
+              tails.rate is that of an exponential tail, 1 over the mean of n - 1
     pieces    of an ensemble of layers in pieces of equal size, by their profiles.csv: response.near_axis is the mean
               pressure on the base within AXIS of the depth about the load, response.largest the largest of the
               pieces' mean; errors by the scatter of the pieces. response.flamant_rel_l2 is the distance of that mean
@@ -83,6 +88,7 @@ import sys
 
 import h5py
 import numpy
+from scipy.optimize import brentq
 from scipy.signal import find_peaks
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -111,7 +117,7 @@ ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.n
          *(f"curvature.{name}" for name in CONSTANTS), *(f"levels.{level}.dip" for level in LEVELS), "axis.whole",
          "axis.low", "axis.high", "density.circles", "density.cut_circles", *(f"axes.{name}_deg" for name in TENSORS),
          *(f"axes.{a}_less_{b}_deg" for a, b in PAIRS), *(f"roul_fit.{name}" for name in FITTED),
-         *(f"memory.{name}" for name in REMEMBERED), "axes.stress_core_deg",
+         *(f"memory.{name}" for name in REMEMBERED), "tails.exponent", "tails.rate", "axes.stress_core_deg",
          "axes.stress_flank_deg", *(f"stiffness.{name}" for name in LAWS),
          "stiffness.fabric_less_pressure",
          *(f"signed.{name}" for name in ("cundall", "liao", "derivative")))
@@ -366,6 +372,38 @@ def base_table(base):
     return "\n".join(lines) + "\n"
 
 
+def forces_over_mean(run):
+    """The normal forces between grains deeper than DEPTHS[0] of a layer over their mean at each depth."""
+    grains, contacts = run["unloaded/grains"], run["unloaded/contacts"]
+    heights, radii = grains["position"][:][:, 1], grains["radius"][:]
+    top, bottom = numpy.quantile(heights + radii, 0.98), (heights - radii).min()
+    depth = (top - contacts["point"][:][:, 1]) / (top - bottom)
+    force = contacts["normal_force"][:]
+    chosen = (contacts["j"][:].astype(int) >= 0) & (force > 0) & (depth > DEPTHS[0])
+    depth, force = depth[chosen], force[chosen]
+    return force / numpy.polyval(numpy.polyfit(depth, force, 1), depth)
+
+
+def tail_exponent(n):
+    """a of exp(-c (n^a - 1)), the share above n of the numbers above 1, by maximum likelihood."""
+    n = n[n > 1]
+    logs = numpy.log(n)
+
+    def slope(a):  # of the likelihood, at the best c
+        powers = n**a
+        return 1 / a + logs.mean() - (powers * logs).sum() / (powers - 1).sum()
+
+    return float(brentq(slope, 0.05, 20))
+
+
+def tails_of(layers):
+    """The figures of `tails`, of the forces over their mean of each layer."""
+    out = summarized([{"tails.rate": 1 / (n[n > 1] - 1).mean()} for n in layers])
+    left = numpy.array([tail_exponent(numpy.concatenate(layers[:k] + layers[k + 1:])) for k in range(len(layers))])
+    error = math.sqrt((len(left) - 1) * ((left - left.mean()) ** 2).mean())
+    return out | {"tails.exponent": tail_exponent(numpy.concatenate(layers)), "tails.exponent.standard_error": error}
+
+
 def inside(points, values):
     """Mean of the values in the lower half of every column of points over that in the upper one."""
     known = numpy.isfinite(values)
@@ -541,6 +579,9 @@ def figures(kind, files, keys, phi_deg=None):
         return fitted_as_roul(heaps, phi_deg)
     if kind == "stiffness":
         return stiffness_of(files)
+    if kind == "tails":
+        with h5py.File(files[0]) as states:
+            return tails_of([forces_over_mean(states[name]) for name in sorted(states)])
     if kind == "rve":
         return sizes_of(*(json.loads(file.read_text()) for file in files))
     if kind == "base":
@@ -560,7 +601,7 @@ def main():
     options = argparse.ArgumentParser(description="Measures on states what no summary has.")
     options.add_argument("kind", choices=("angles", "gravity", "forces", "network", "poured", "fields", "strain",
                                           "pieces", "centre", "rve", "base", "summary", "heap", "memory",
-                                          "roul_fit", "stiffness"))
+                                          "roul_fit", "stiffness", "tails"))
     options.add_argument("study", help="results/STUDY.json takes the keys")
     options.add_argument("file", type=pathlib.Path, nargs="+")
     options.add_argument("--member", required=True, help="ends the keys")

@@ -102,10 +102,10 @@ run apart liffman-soft-piles --set 'sweep.values=["slope_60"]' --set lattice.gap
 measure summary liffman-soft-piles apart/slope_60/summary.json --member apart_60 --keys liffman.
 run touching liffman-lattice --set lattice.gap=0 --set 'sweep.values=[60]'
 measure summary liffman-lattice touching/slope_deg_60/summary.json --member touch_60 --keys liffman.
+# Those of runs/liffman-settling.txt that are there.
 for slip in 0.5 5 50; do
-  run slip-$slip implicit-settling --set 'sweep.values=["wells"]' --set lattice.base_grains=45 \
-    --set settling.max_time=200 --set settling.slip_damping=$slip
-  measure summary implicit-settling slip-$slip/wells/summary.json --member slip_${slip/./} --keys settling.
+  record=$here/states/liffman-settling/slip-$slip.json
+  [ ! -e "$record" ] || measure summary implicit-settling "$record" --member slip_${slip/./} --keys settling.
 done
 
 # Dropped piles of runs/liffman.txt and liffman-grains.txt, of those that are there.
@@ -165,6 +165,17 @@ unpack friction_0.3 && measure angles point-load-friction friction_0.3.h5 --memb
 strain mono_rough_3 rough_3 0
 strain mono_rough_300 rough_300 0
 strain mono_rough_3-varied rough_3_varied {0..7}
+
+# Tails of P(n): layers of runs/tails.txt, forces by the overlap's area and linear springs.
+tails() { # FILE MEMBER
+  [ -e "$here/states/tails/$1.h5.xz" ] || return 0
+  xz -dkc "$here/states/tails/$1.h5.xz" > "tails-$2.h5"
+  measure tails point-load-polydisperse "tails-$2.h5" --member "$2"
+}
+for mu in 0 0.2 0.5 1; do
+  tails "area-mu-$mu" "area_$mu"
+  tails "linear-mu-$mu" "linear_$mu"
+done
 
 flamant='compare.models=["flamant"]'
 run pentagons point-load-pentagons --set "$flamant" --set $four

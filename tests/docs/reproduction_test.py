@@ -30,6 +30,7 @@ OPEN_ROWS = 8
 MISSING_FIGURES = 0
 #: Figures of each source, by chapter where they are numbered so.
 FIGURES = {"Roul": {1: 12, 2: 10, 3: 32, 4: 9, 5: 17}, "Wellmann": 17, "Liffman": 20}
+TABLES = {"Roul": {"table 1", "table 2", "table 5.1"}, "Wellmann": {"table 1"}, "Liffman": set()}
 
 
 @pytest.fixture
@@ -93,6 +94,8 @@ def test_the_list_of_the_sources_figures_is_whole():
         kinds = ("results", "sketches", "pictures", "others")
         found = [one for kind in kinds for one in listed[source][kind] if one.startswith("fig.")]
         assert sorted(found) == sorted(every), source
+        tables = [one for kind in (*kinds, "parameters") for one in listed[source][kind] if not one.startswith("fig.")]
+        assert len(tables) == len(set(tables)) and set(tables) == TABLES[source], source
 
 
 def test_every_figure_of_the_sources_has_a_row():
@@ -570,6 +573,30 @@ def test_directions_of_forces_by_hand():
     assert measure.order(measure.numpy.full(40, 12.0)) == 1
     even = measure.numpy.random.default_rng(1).uniform(0, 360, (40, 500))
     assert abs(measure.numpy.mean([measure.order(one) for one in even])) < 1e-3  # 0.010 without Miller's term
+
+
+@pytest.mark.parametrize("power", [1, 2])
+def test_tails_of_known_power_are_found_at_every_depth(power):
+    """Forces that grow with the depth, whose share above n > 1 is exp(-c (n^power - 1)) of the mean's."""
+    numpy, generator = measure.numpy, measure.numpy.random.default_rng(power)
+
+    def layer():
+        x, y = numpy.meshgrid(numpy.arange(60.0), numpy.arange(20.0))
+        depth = 19.5 - generator.uniform(0, 19, x.size)
+        n = generator.exponential(size=x.size) ** (1 / power)
+        contacts = {"i": numpy.zeros(x.size), "j": numpy.where(depth > 18.9, -1, 1),
+                    "normal_force": n * (1 + depth), "point": numpy.stack((x.ravel(), 19.5 - depth), axis=1)}
+        grains = {"position": numpy.stack((x.ravel(), y.ravel()), axis=1), "radius": numpy.full(x.size, 0.5)}
+        return {"unloaded/contacts": contacts, "unloaded/grains": grains}
+
+    layers = [measure.forces_over_mean(layer()) for _ in range(8)]
+    assert measure.numpy.mean(layers[0]) == pytest.approx(1, abs=0.02) and len(layers[0]) < 1000
+    found = measure.tails_of(layers)
+    assert set(found) - {"ensemble.realizations"} <= {*measure.ADDED, *(f"{key}.standard_error" for key in measure.ADDED)}
+    # The mean of exponential(1)^(1/2) is sqrt(pi)/2, and the tail's power does not change with the unit.
+    assert abs(found["tails.exponent"] - power) < 3 * found["tails.exponent.standard_error"] < 0.5
+    if power == 1:
+        assert abs(found["tails.rate"] - 1) < 4 * found["tails.rate.standard_error"] < 0.2
 
 
 def test_stresses_and_displacements_of_a_changed_heap_by_hand():

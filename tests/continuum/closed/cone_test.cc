@@ -34,7 +34,8 @@ Cone random_cone(Random& random) {
 }
 
 // div sigma and gravity by central differences of the six components, over rho g.
-double imbalance(const OslCone& cone, const Eigen::Vector3d& at, double step) {
+template <class AnyCone>
+double imbalance(const AnyCone& cone, const Eigen::Vector3d& at, double step) {
   Eigen::Vector3d sum(0, 0, -1);
   const int index[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
   for (int j = 0; j < 3; ++j) {
@@ -115,6 +116,43 @@ TEST(OslCone, ObeysItsClosuresAndHasNoStressOnItsSurface) {
   EXPECT_TRUE(outside.array().isNaN().all());
 }
 
+TEST(LevyCone, BalancesGravityEverywhere) {
+  Random random(6);
+  for (int trial = 0; trial < 200; ++trial) {
+    const double phi = random.uniform(5, 60) * kDegree;
+    const LevyCone cone(phi, 1);
+    for (int k = 0; k < 20; ++k) {
+      const double S = random.uniform(0.02, 0.98), angle = random.uniform(0, 2 * std::numbers::pi);
+      if (std::fabs(S - cone.singular()) < 0.02) continue;
+      const double r = S / std::tan(phi);
+      const Eigen::Vector3d at(r * std::cos(angle), r * std::sin(angle), -1);
+      const double whole = imbalance(cone, at, 2e-3), half = imbalance(cone, at, 1e-3);
+      EXPECT_LT(half, 0.3 * whole + 2e-8) << "phi " << phi / kDegree << " S " << S;
+    }
+  }
+}
+
+TEST(LevyCone, ObeysItsClosuresAndEndsAtItsSurface) {
+  Random random(7);
+  for (int trial = 0; trial < 500; ++trial) {
+    const double phi = random.uniform(5, 60) * kDegree, c = std::tan(phi);
+    const LevyCone cone(phi, 2);
+    const double S0 = cone.singular();
+    const auto below = cone.reduced(S0 * (1 - 1e-9)), above = cone.reduced(S0 * (1 + 1e-9));
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(below[k], above[k], 1e-7) << S0;
+    EXPECT_NEAR(cone.reduced(0)[1], 1 - std::numbers::pi / 2 * std::sin(phi), 1e-14);
+    for (const double value : cone.reduced(1)) EXPECT_NEAR(value, 0, 1e-12);
+    const double S = random.uniform(0, 1);
+    const auto s = cone.stress(S / c, 0, -1);
+    EXPECT_NEAR(s[1], (s[0] + s[2]) / 2, 1e-12);  // tt is yy there
+    EXPECT_NEAR(-s[0], -s[2] - 2 * c * s[4], 1e-12);
+    using Rule = boost::math::quadrature::gauss_kronrod<double, 31>;
+    const auto ring = [&](double at) { return cone.reduced(at)[1] * at; };
+    EXPECT_NEAR(Rule::integrate(ring, 0.0, S0, 12) + Rule::integrate(ring, S0, 1.0, 12), 1.0 / 6,
+                1e-8);
+  }
+}
+
 // Wittmer, Cates and Claudin: fixed principal axes dip, mu = 0 has its largest pressure inside.
 TEST(OslCone, FixedAxesDip) {
   const auto fpa = make_model("cone_fpa", {{"phi_deg", "30"}})->figures();
@@ -122,6 +160,9 @@ TEST(OslCone, FixedAxesDip) {
   EXPECT_LT(fpa.at("dip_ratio"), 0.7);
   EXPECT_GT(fpa.at("base_largest_at"), 0.1);
   EXPECT_GT(bcc.at("dip_ratio"), fpa.at("dip_ratio"));
+  const auto levy = make_model("cone_fpa_levy", {{"phi_deg", "30"}})->figures();
+  EXPECT_NEAR(levy.at("base_centre"), 1 - std::numbers::pi / 4, 1e-14);
+  EXPECT_NEAR(levy.at("dip_ratio"), 0.3458, 1e-4);
 }
 
 TEST(OslCone, RefusesWhatHasNoSolution) {
