@@ -101,7 +101,6 @@ class Analysis {
       throw ComputationFailed("response.loads: the layer has no surface grain that touches others");
     figures_["rest.unbalanced_force_ratio"].push_back(rest.unbalanced_force_ratio);
     figures_["rest.contacts_changed"].push_back(rest.contacts_gained + rest.contacts_lost);
-    figures_["rest.unbalanced_force_ratio"].push_back(rest.unbalanced_force_ratio);
     double below = 0;
     for (const LoadPlace& place : layer.places) below += place.depth;
     figures_["response.load_depth"].push_back(below / static_cast<double>(layer.places.size()));
