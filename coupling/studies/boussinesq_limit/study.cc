@@ -37,6 +37,9 @@ namespace {
 // reaches: a small load on a deep layer changes contact forces by little, and disks that roll
 // between others may keep it from the last digits.
 constexpr std::array kRests{1e-9, 1e-8, 1e-7};
+// Finite elements are refined to this, far below the grains' noise: where shear is soft they need
+// many unknowns for more.
+constexpr const char* kFiniteElementTolerance = "1e-3";
 constexpr double kEvidence = 0.1;  // "right to x %" is told below this
 
 dem::Materials materials_of(const dem::MaterialSetup& m) {
@@ -129,6 +132,10 @@ class LimitAnalysis {
     return path.string();
   }
 
+  static ModelChoice finite_elements(const std::string& name, const std::string& moduli) {
+    return {"", name, {{"moduli", moduli}, {"tolerance", kFiniteElementTolerance}}};
+  }
+
   // Numbers of a model from the same measurement.
   ModelChoice of_constants(const std::string& label, const std::string& name) const {
     ModelChoice out{label, name, {}};
@@ -154,22 +161,22 @@ class LimitAnalysis {
     const bool space = dim_ == 3;
     for (const char* base : {"rough", "smooth"}) {
       ModelChoice one = space ? of_constants("", "transverse_layer")
-                              : ModelChoice{"", "fe_elastic_layer", {{"moduli", homogeneous}}};
+                              : finite_elements("fe_elastic_layer", homogeneous);
       one.label = fmt::format("homogeneous_{}", base);
       one.settings["base"] = base;
       models.push_back(one);
     }
-    models.push_back(space ? of_constants("homogeneous_half_space", "transverse_half_space")
-                           : ModelChoice{"homogeneous_half_space",
-                                         "fe_elastic_half_space",
-                                         {{"moduli", homogeneous}}});
+    models.push_back(space ? of_constants("", "transverse_half_space")
+                           : finite_elements("fe_elastic_half_space", homogeneous));
+    models.back().label = "homogeneous_half_space";
     if (!response_.finite_elements) return;
     for (const char* base : {"rough", "smooth"}) {
-      models.push_back({fmt::format("by_depth_{}", base),
-                        "fe_elastic_layer",
-                        {{"moduli", by_depth}, {"base", base}}});
+      models.push_back(finite_elements("fe_elastic_layer", by_depth));
+      models.back().label = fmt::format("by_depth_{}", base);
+      models.back().settings["base"] = base;
     }
-    models.push_back({"by_depth_half_space", "fe_elastic_half_space", {{"moduli", by_depth}}});
+    models.push_back(finite_elements("fe_elastic_half_space", by_depth));
+    models.back().label = "by_depth_half_space";
   }
 
   SeenThrough through(double width) const {
