@@ -77,7 +77,7 @@ result" means not run or not measured; the row says which.
   becomes by it alone.
 - **The steeper flank** is the flank with the larger mean, on whichever side. The study's page says which side was
   meant.
-- **Nothing was tuned to agree.** What counts as theirs in Roul's section 1.3 and figures 2.3, 2.4, 3.4, 3.5, 3.8,
+- **Nothing was tuned to agree.** What counts as theirs in Roul's section 1.3 and figures 2.3, 2.4, 3.4, 3.5, 3.7, 3.8,
   3.19, 3.20, 3.25, 3.26, 3.29, 5.13 and 5.15 and, of N beside H and of H beside a row, in Liffman's 13 and 14 was
   written when our values were known. In 3.29 and 5.15 values of 24 to 26 % stand beside a limit of 25 %.
 
