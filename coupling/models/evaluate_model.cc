@@ -106,7 +106,8 @@ std::string model_label(const ModelChoice& choice) {
   if (known != nullptr && known->registry != choice.name) known = nullptr;
   std::vector<std::string> items;
   for (const auto& [name, value] : choice.settings) {
-    if (known == nullptr || known->fixed.count(name) == 0) items.push_back(name + "=" + told_value(value));
+    if (known == nullptr || known->fixed.count(name) == 0)
+      items.push_back(name + "=" + told_value(value));
   }
   const bool one = choice.label == choice.name || known != nullptr;
   const std::string name = one ? choice.label : choice.label + "=" + choice.name;

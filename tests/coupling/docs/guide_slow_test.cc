@@ -154,7 +154,8 @@ TEST(Experiments, EveryCommandRuns) {
   folder.write("apex.csv", "x,y,z\n0,0,-1\n");
   const Page page = read_and_run(folder, "experiments.md");
   EXPECT_EQ(page.commands, 16);
-  // The dips of cone_fpa, cone_fpa_levy, cone_osl by its default and with two mu, and cone_bcc, as in the table.
+  // The dips of cone_fpa, cone_fpa_levy, cone_osl by its default and with two mu, and cone_bcc, as
+  // in the table.
   std::vector<double> dips;
   const std::regex ratio("# dip_ratio = ([0-9.]+)");
   for (auto at = std::sregex_iterator(page.said.begin(), page.said.end(), ratio);
