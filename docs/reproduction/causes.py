@@ -19,7 +19,7 @@ sys.path.insert(0, str(HERE))
 sys.path.insert(0, str(HERE / "runs"))
 
 from collect import mean_of, read_runs  # noqa: E402
-from next import read_list  # noqa: E402
+from next import fail, read_list  # noqa: E402
 from record import write_file  # noqa: E402
 from rows import SHORT, WITHIN_SHORT  # noqa: E402
 from summaries import Measured, Results  # noqa: E402
@@ -150,7 +150,7 @@ def put(text, made):
     for table in made:
         first = re.escape(table.partition("\n")[0])
         if len(re.findall(rf"^{first}$", text, flags=re.M)) != 1:
-            sys.exit(f"causes.py: {PAGE}: found no table with the line \"{table.partition(chr(10))[0]}\", or several")
+            fail(f"{PAGE}: found no table with the line \"{table.partition(chr(10))[0]}\", or several")
         text = re.sub(rf"^{first}\n(\|.*\n)+", lambda _: table, text, flags=re.M)
     return text
 

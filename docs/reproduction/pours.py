@@ -4,9 +4,9 @@
     docs/reproduction/pours.py            table of all pours
     docs/reproduction/pours.py causes     table of the causes of runs/pile-causes.txt, of the piles that are there
 
-Both read the states (states/*.h5.xz), or else results/*.json, and measure as heaps.py does: sigma_xx / sigma_yy on the axis, shoulder less
-centre of the pressure in the windows of dip.difference, at the base (over rho g h) and a quarter of the height above it
-(over that of the part above), volume fraction and slope. A cell is the mean over piles with its standard error.
+Both read the states (states/*.h5.xz), or else results/*.json, and measure as heaps.py does: sigma_xx / sigma_yy on the
+axis, shoulder less centre of the pressure in the windows of dip.difference, at the base (over rho g h) and a quarter of
+the height above it (over that of the part above), volume fraction and slope. A cell is the mean over piles with its standard error.
 
 A pour: how many piles would bring the error of the difference to ERROR, and how many would see DIP, Roul's by his
 constants, with a probability of POWER if there were none (two-sided, 5 %). A cause: its difference from the base, bold

@@ -47,7 +47,7 @@ GRACE = 120  # s for a checkpoint
 
 
 def fail(message):
-    print(f"next.py: {message}", file=sys.stderr)
+    print(f"{pathlib.Path(sys.argv[0]).name}: {message}", file=sys.stderr)
     sys.exit(2)
 
 
