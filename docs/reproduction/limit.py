@@ -15,13 +15,16 @@ import json
 import math
 import pathlib
 import re
-import shlex
 import subprocess
 import sys
 
 from scipy import stats
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE / "runs"))
+
+from next import fail, read_list  # noqa: E402
+
 PAGE = HERE.parent / "cases" / "boussinesq-limit.md"
 LISTS = ("boussinesq", "boussinesq-space")
 ROUGH = "rough"  # the base on which no contact slides
@@ -144,18 +147,12 @@ def percent(value, error=math.nan):
     return f"{100 * value:.1f} ± {100 * error:.1f} %"
 
 
-def read_list(file):
-    """Names and settings of a list of runs/next.py."""
-    lines = (shlex.split(line, comments=True) for line in file.read_text().splitlines())
-    return [(words[0], words[3:]) for words in lines if len(words) > 2]
-
-
 def finished(states):
     """The runs that are there, by depth and friction."""
     runs = []
     for name in LISTS:
         listed = HERE / "runs" / f"{name}.txt"
-        for run, settings in read_list(listed) if listed.exists() else []:
+        for run, _, _, settings in read_list(listed)[1] if listed.exists() else []:
             if (states / name / f"{run}.json").exists():
                 runs.append(Run(states / name, run, settings))
     return sorted(runs, key=lambda run: (run.shape, run.depth, run.friction, run.grains))
@@ -250,7 +247,7 @@ def linearity(runs):
 
 def costs(runs):
     head = ["depth / d", "μ", "disks in a layer", "layers", "CPU min", "deposit and load",
-            "rest, moduli, response", "finite elements", "memory (MB)"]
+            "rest, moduli, response (clock)", "finite elements (clock)", "memory (MB)"]
     rows = []
     for run in usual(runs):
         dem, fe, all_analysis = (run.number(f"time.{name}") for name in ("dem_cpu_s", "continuum_s", "analysis_s"))
@@ -267,7 +264,7 @@ def replaced(text, made):
     for new in made:
         head = new.partition("\n")[0]
         if head not in text:
-            sys.exit(f"{PAGE}: no table with the head \"{head}\"")
+            fail(f"{PAGE}: no table with the head \"{head}\"")
         before, _, rest = text.partition(head)
         after = re.sub(r"\A\n(\|.*\n)*", "", rest)
         text = before + new + after
@@ -307,7 +304,7 @@ def draw(runs, picture):
         if curves:
             plots += f"set title 'Misfit {title}'\nplot " + ", ".join(curves) + "\nunset key\nunset label\n"
     if not plots:
-        sys.exit("limit.py: no run has ended; nothing to draw")
+        fail("no run has ended; nothing to draw")
     head = (f'set terminal svg size 960,800 background "white" font "sans,13"\nset output "{picture}"\n'
             "set multiplot layout 2,2 margins 0.08,0.99,0.07,0.88 spacing 0.08,0.13\nset logscale x\nset xtics (8, 15, 30, 60, 120)\nset grid\n"
             f"set xrange [6:{wide:g}]\nset yrange [0:{1.15 * most or 100:g}]\nset xlabel 'depth / mean diameter'\n"
@@ -327,9 +324,9 @@ def main():
     made = [one(runs) for one in TABLES]
     if given.picture:
         draw(runs, given.picture)
-    elif given.write:
+    if given.write:
         PAGE.write_text(replaced(PAGE.read_text(), made))
-    else:
+    elif not given.picture:
         print("\n".join(made), end="")
 
 
