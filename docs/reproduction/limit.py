@@ -215,8 +215,7 @@ def shifted(value):
 
 def causes(runs):
     head = ["depth / d", "excess over one stiffness, w = 0.1 h", "over stiffness by depth", "w = 1.5 d",
-            "load on 3 disks, w = 0.1 h", "on 10 disks", "shift / d at 0.25 h", "at 0.5 h", "at 0.75 h",
-            "depth / d of the loaded centres"]
+            "load on 3 disks, w = 0.1 h", "on 10 disks", "shift / d at 0.25 h", "at 0.5 h", "at 0.75 h"]
     rows = []
     for run in usual(runs):
         if run.friction != 0.5 or run.shape != "disks":
@@ -229,8 +228,7 @@ def causes(runs):
             more = next((other for other in runs if other.name == name), None)
             cells.append(percent(*more.excess(HOMOGENEOUS, "w_depths")) if more else "–")
         cells += [shifted(run.shift(BY_DEPTH, "w_depths", at)) for at in (0.25, 0.5, 0.75)]
-        below = run.number("response.load_depth") / run.number("layer.mean_diameter")
-        rows.append(cells + [f"{below:.2f}" if math.isfinite(below) else "–"])
+        rows.append(cells)
     return table(head, rows)
 
 
