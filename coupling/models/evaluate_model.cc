@@ -95,13 +95,18 @@ void require_models(const std::vector<ModelChoice>& choices, int dim) {
 // Constants that the label of a model with a name of its own tells.
 constexpr std::size_t kMostTold = 3;
 
+// A file without its folder: a label is of the model, wherever its table lies.
+std::string told_value(const std::string& value) {
+  return value.substr(value.find_last_of('/') + 1);
+}
+
 std::string model_label(const ModelChoice& choice) {
   // A name that fits give says its settings itself.
   const FitName* known = find_fit_name(choice.label);
   if (known != nullptr && known->registry != choice.name) known = nullptr;
   std::vector<std::string> items;
   for (const auto& [name, value] : choice.settings) {
-    if (known == nullptr || known->fixed.count(name) == 0) items.push_back(name + "=" + value);
+    if (known == nullptr || known->fixed.count(name) == 0) items.push_back(name + "=" + told_value(value));
   }
   const bool one = choice.label == choice.name || known != nullptr;
   const std::string name = one ? choice.label : choice.label + "=" + choice.name;

@@ -61,6 +61,9 @@ class Blocks {
         };
         while (tail > rows.first(i) && is_alone(rows[tail - 1].j)) --tail;
         for (int k = rows.first(i); k < tail; ++k) mine.inside.add(i, rows[k].j, k);
+        for (int k = tail; k < end; ++k) {
+          if (rows[k].j >= grains) mine.asleep.add(i, rows[k].j, k);
+        }
         const RowTail own{i, tail, mine.inside.count};
         if (end < rows.last(i)) {
           mine.across.push_back(own);
@@ -80,6 +83,7 @@ class Blocks {
     for (Thread& t : threads_) {
       t.tails.push_back({});  // of no row
       t.inside.repeat_last(behind);
+      t.asleep.repeat_last(behind);
       t.crossing.repeat_last(behind);
     }
   }
@@ -93,6 +97,8 @@ class Blocks {
   const PairsInOrder& incoming(int rank) const { return threads_[rank].incoming; }
   /// The pairs of this block's rows but for their tails; second grains may sleep.
   const PairsInOrder& inside(int rank) const { return threads_[rank].inside; }
+  /// The pairs in the tails of this block's rows whose second grain is asleep or fixed.
+  const PairsInOrder& asleep(int rank) const { return threads_[rank].asleep; }
   /// Ends of rows without images, and of those with some. The first ones end with one of no
   /// row.
   const std::vector<RowTail>& tails(int rank) const { return threads_[rank].tails; }
@@ -100,11 +106,11 @@ class Blocks {
 
  private:
   struct Thread {
-    PairsInOrder inside, incoming, crossing;
+    PairsInOrder inside, asleep, incoming, crossing;
     std::vector<RowTail> tails, across;
 
     void clear() {
-      for (PairsInOrder* order : {&inside, &incoming, &crossing}) order->clear();
+      for (PairsInOrder* order : {&inside, &asleep, &incoming, &crossing}) order->clear();
       tails.clear();
       across.clear();
     }

@@ -147,6 +147,16 @@ class Sweep {
   bool sweeps_rows() const {
     return !balances_ && (dim == 3 || !rolls_) && world_.acting.kinds() == 1 && lane_width() > 2;
   }
+  /// Pairs of tails with sleepers or fixed grains, which do not move in this sweep, side by side.
+  GRAINFIELD_FLATTEN void asleep_rows(int rank, double dt) {
+    const PairsInOrder& order = world_.contacts.blocks.asleep(rank);
+    RowForces<World> rows(world_, contact_forces_, sums_, dt, RowForcesGo::to_list);
+    for (int n = 0; n < order.count; n += kBatch) {
+      const int to = std::min(n + kBatch, order.count);
+      for (int m = n; m < to; ++m) world_.contacts.pair_forces[order.pair[m]] = Force{};
+      rows.evaluate(order, n, to);
+    }
+  }
   /// crossing(), side by side but for pairs across a face.
   GRAINFIELD_FLATTEN void crossing_rows(int rank, double dt) {
     auto& contacts = world_.contacts;
@@ -216,14 +226,16 @@ class Sweep {
 
   /// The same, for shapes whose pairs are evaluated and added to the sums kBatch at a time, row
   /// after row (row_forces.h); then the grains whose rows are done move, spheres side by side where
-  /// they can. Bit by bit as pair by pair. Pairs that crossing() has evaluated, or whose second
-  /// grain sleeps or is across a face, are the last of a row and done by themselves: before the
-  /// grain moves, or at once where one is across a face, for it may add to any grain's sum.
+  /// they can. Bit by bit as pair by pair. Pairs that crossing() or asleep_rows() has
+  /// evaluated, or whose second grain is across a face, are the last of a row and added by
+  /// themselves: before the grain moves, or at once where one is across a face, for it may add to
+  /// any grain's sum.
   template <bool in_cell>
   GRAINFIELD_FLATTEN void sweep_rows(int rank, const Vector& applied, double dt) {
     const Blocks& blocks = world_.contacts.blocks;
     const int last = blocks.last(rank);
     if (blocks.first(rank) == last) return;
+    asleep_rows(rank, dt);
     const PairsInOrder& order = blocks.inside(rank);
     const std::vector<RowTail>& across = blocks.across(rank);
     RowForces<World> rows(world_, contact_forces_, sums_, dt, RowForcesGo::to_sums);
@@ -240,7 +252,7 @@ class Sweep {
                         ends, begins);
       if (!in_cell || n < stop || next == across.size()) continue;
       const RowTail& tail = across[next++];
-      add_tail(tail, first_across(tail.row), dt);
+      add_tail(tail, first_across(tail.row));
       const Force sum = sum_across<SweepKind::move_on>(tail.row, last, dt);
       sums_[tail.row].force += sum.force;
       sums_[tail.row].torque += sum.torque_i;
@@ -256,17 +268,13 @@ class Sweep {
     const RowTail* tail = nullptr;  ///< the first one that has not been added
   };
   /// A row's pairs from its tail on, up to `end`. What another thread may have written is far away.
-  void add_tail(const RowTail& tail, int end, double dt) {
+  void add_tail(const RowTail& tail, int end) {
     auto& contacts = world_.contacts;
     Sum& sum = sums_[tail.row];
     for (int k = tail.from; k < end; ++k) {
       __builtin_prefetch(&contacts.pair_forces[k + kAhead]);
-      Force f;
-      if (contacts.pairs[k].j < world_.awake) {
-        f = contacts.pair_forces[k];
-      } else if (contact_forces_.pair(tail.row, k, dt, f)) {
-        contacts.felt[k].add_second(f);
-      }
+      const Force& f = contacts.pair_forces[k];
+      if (contacts.pairs[k].j >= world_.awake) contacts.felt[k].add_second(f);
       sum.force += f.force;
       sum.torque += f.torque_i;
     }
@@ -280,7 +288,7 @@ class Sweep {
     int list[kBatch], count = 0;
     for (int i = ends.row; i < to; ++i) {
       if (ends.tail->row == i) [[unlikely]] {
-        add_tail(*ends.tail++, contacts.pairs.last(i), dt);
+        add_tail(*ends.tail++, contacts.pairs.last(i));
       }
       if (bodies[i].inverse_mass == 0) {
         sums_[i] = Sum{};

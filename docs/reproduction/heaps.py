@@ -14,6 +14,7 @@ RVE = 0.1
 GRAVITY = 9.81  # m/s2, of a state that does not say
 FLANK = (0.15, 0.85)  # of the height: the part of a flank that has its line, as the program's
 ROUNDS = 10
+ROUND = 48  # sides of a disk
 BELOW = 1.5  # mean diameters below the flanks' lines, above which the density is not that of the inside
 CENTRE, SHOULDER = 0.1, (0.15, 0.4)  # half bases, as heap.centre and heap.shoulder_* of a case
 AXIS = (0.1, 0.6)  # heights, as heap.axis_from and heap.axis_to
@@ -38,6 +39,23 @@ def tops(edges, width):
         for side in (column - 1, column):
             numpy.maximum.at(found, side, y)
     return (numpy.arange(len(found)) + first + 0.5) * width, found
+
+
+def sides(grains, places):
+    """From and to of every side of the outlines, n x 2 x 2, and the grain of each; disks have ROUND of them."""
+    angle, radius = grains["angle"][:], grains["radius"][:]
+    if "outline" in grains:
+        start, outline = grains["outline_start"][:].astype(int), grains["outline"][:]
+    else:
+        start, turns = numpy.arange(len(places) + 1) * ROUND, numpy.arange(ROUND) * 2 * math.pi / ROUND
+        outline = (radius[:, None, None] * numpy.stack((numpy.cos(turns), numpy.sin(turns)), axis=1)).reshape(-1, 2)
+    grain = numpy.repeat(numpy.arange(len(places)), numpy.diff(start))
+    cosine, sine = numpy.cos(angle[grain]), numpy.sin(angle[grain])
+    corners = places[grain] + numpy.stack((cosine * outline[:, 0] - sine * outline[:, 1],
+                                           sine * outline[:, 0] + cosine * outline[:, 1]), axis=1)
+    after = numpy.arange(1, len(corners) + 1)
+    after[start[1:] - 1] = start[:-1]
+    return numpy.stack((corners, corners[after]), axis=1), grain
 
 
 def theil_sen(x, y):
@@ -65,29 +83,44 @@ def flank(x, y, height):
 
 
 class Heap:
-    """A heap at rest on a plane floor, by the group of its state in a snapshots.h5 (or a dictionary of arrays)."""
+    """A heap at rest on a plane floor or on fixed grains, by the group of its state in a snapshots.h5 (or a dictionary of
+    arrays)."""
 
     def __init__(self, state):
         self.gravity = abs(float(state.attrs["gravity_y"])) if hasattr(state, "attrs") else GRAVITY
         grains, contacts = state["grains"], state["contacts"]
-        self.places, self.ids = grains["position"][:][:, :2], grains["id"][:].astype(int)
-        self.areas, self.masses = grains["volume"][:], grains["mass"][:]
-        self.radii = grains["radius"][:]
+        places = grains["position"][:][:, :2]
+        free = grains["fixed"][:] == 0 if "fixed" in grains else numpy.ones(len(places), dtype=bool)
+        self.places, self.ids = places[free], grains["id"][:].astype(int)[free]
+        self.areas, self.masses, self.radii = (grains[name][:][free] for name in ("volume", "mass", "radius"))
+        self.diameter = 2 * self.radii.mean()
         self.i, self.j = (contacts[name][:].astype(int) for name in ("i", "j"))
         self.force, self.normal, self.point = (contacts[name][:][:, :2] for name in ("force", "normal", "point"))
-        self.floor = float(state["walls"]["point"][:][0, 1])
-        self.diameter = 2 * self.radii.mean()
-        start, angle, outline = (grains[name][:] for name in ("outline_start", "angle", "outline"))
-        start = start.astype(int)
-        grain = numpy.repeat(numpy.arange(len(self.places)), numpy.diff(start))
-        cosine, sine = numpy.cos(angle[grain]), numpy.sin(angle[grain])
-        corners = self.places[grain] + numpy.stack((cosine * outline[:, 0] - sine * outline[:, 1],
-                                                    sine * outline[:, 0] + cosine * outline[:, 1]), axis=1)
-        after = numpy.arange(1, len(corners) + 1)
-        after[start[1:] - 1] = start[:-1]
-        edges = numpy.stack((corners, corners[after]), axis=1)
+        carriers = self._leave_out(~free)
+        if len(carriers) > 0:
+            self.floor = float((places[carriers, 1] + grains["radius"][:][carriers]).mean())
+        else:
+            self.floor = float(state["walls"]["point"][:][0, 1])
+        edges, grain = sides(grains, places)
+        edges = edges[free[grain]]
         edges[..., 1] -= self.floor
         self._frame(*tops(edges, self.diameter))
+
+    def _leave_out(self, fixed):
+        """Makes contacts with fixed grains, those of a rough floor, contacts with a floor; the fixed grains of them."""
+        with_floor = self.j < 0
+        turned = fixed[self.i] & ~with_floor
+        self.i[turned], self.j[turned] = self.j[turned], self.i[turned]
+        for vectors in (self.force, self.normal):
+            vectors[turned] *= -1
+        kept = ~fixed[self.i]
+        self.i, self.j, self.force, self.normal, self.point = (
+            one[kept] for one in (self.i, self.j, self.force, self.normal, self.point))
+        on_fixed = (self.j >= 0) & fixed[self.j]
+        carriers = self.j[on_fixed]
+        number = numpy.cumsum(~fixed) - 1
+        self.i, self.j = number[self.i], numpy.where((self.j < 0) | on_fixed, -1, number[self.j])
+        return carriers
 
     def _frame(self, x, y):
         """Apex, height, feet and rho by the columns of the surface, as the program's."""

@@ -58,8 +58,8 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
               slope over the line model's. N and H of every base disk, and those of lattice and lines, go into
               results/STUDY.base.MEMBER.csv, in m g
     heap      of heaps, by their states (heaps.py): levels.H.dip is shoulder less centre of the vertical pressure at
-              these LEVELS of the height, in the windows of the dip and over rho g h of the part above; axis.low and
-              axis.high are sigma_xx over sigma_yy on the axis in the halves of the window of axis.stress_ratio;
+              these LEVELS of the height, in the windows of the dip and over rho g h of the part above; axis.whole is
+              sigma_xx over sigma_yy on the axis in the window of axis.stress_ratio, axis.low and axis.high in its halves;
               density.circles is the density on the axis over that of circles that touch the surface from inside,
               density.cut_circles over that of circles of which a part of half a radius is outside; axes.A_less_B_deg
               are mean angles between the axes of the fabric along branches, of that along normals and of the stress
@@ -98,7 +98,7 @@ from heaps import AXIS as AXIS_WINDOW, RVE, Heap, angle_deg, remembered  # noqa:
 from record import write_file  # noqa: E402
 from roul_fit import FIGURES as FITTED, figures as fitted_as_roul  # noqa: E402
 
-LEVELS = (0.1, 0.25, 0.5)
+LEVELS = (0, 0.1, 0.25, 0.5)
 CORE, FLANK = (0.1, 0.2), 0.4  # nearer to the axis both halves mix
 TENSORS = ("branch", "normal", "stress", "strain")
 PAIRS = (("branch", "stress"), ("normal", "stress"), ("branch", "normal"), ("strain", "stress"))
@@ -114,8 +114,8 @@ ADDED = ("angles.near_60", "angles.near_30", "angles.normals_near_60", "angles.n
          "strain.width_ratio", *(f"inside.{name}" for name in ("bulk", "shear", "young", "poisson", "fabric_trace")),
          *(f"base.{name}" for name in ("horizontal_off_line", "normal_off_mean", "horizontal_explained",
                                        "horizontal_slope")),
-         *(f"curvature.{name}" for name in CONSTANTS), *(f"levels.{level}.dip" for level in LEVELS), "axis.low",
-         "axis.high", "density.circles", "density.cut_circles", *(f"axes.{name}_deg" for name in TENSORS),
+         *(f"curvature.{name}" for name in CONSTANTS), *(f"levels.{level}.dip" for level in LEVELS), "axis.whole",
+         "axis.low", "axis.high", "density.circles", "density.cut_circles", *(f"axes.{name}_deg" for name in TENSORS),
          *(f"axes.{a}_less_{b}_deg" for a, b in PAIRS), *(f"roul_fit.{name}" for name in FITTED),
          *(f"memory.{name}" for name in REMEMBERED), "tails.exponent", "tails.rate", "axes.stress_core_deg",
          "axes.stress_flank_deg", *(f"stiffness.{name}" for name in LAWS),
@@ -240,7 +240,7 @@ def heap_of(run):
     lower = [name for name in run if name.startswith("gravity_")]
     axes = heap.deviators(moved=run[lower[0]]["grains/position"][:][:, :2] if lower else None)
     return ({f"levels.{level}.dip": heap.dip(level) for level in LEVELS}
-            | {"axis.low": heap.axis_ratio(low, middle), "axis.high": heap.axis_ratio(middle, high),
+            | {"axis.whole": heap.axis_ratio(low, high), "axis.low": heap.axis_ratio(low, middle), "axis.high": heap.axis_ratio(middle, high),
                "density.circles": heap.density_ratio(RVE), "density.cut_circles": heap.density_ratio(RVE / 2)}
             | {f"axes.{a}_less_{b}_deg": angle_deg(axes[a], axes[b]) for a, b in PAIRS
                if a in axes}
@@ -572,8 +572,11 @@ def figures(kind, files, keys, phi_deg=None):
                              *(fields["elastic_constants/value"][name][:] for name in CONSTANTS)])
         return summarized(found) | curvatures(numpy.array(maps))
     if kind == "roul_fit":
-        with h5py.File(files[0]) as states:
-            return fitted_as_roul([Heap(states[name]["pile"]) for name in sorted(states)], phi_deg)
+        heaps = []
+        for file in files:
+            with h5py.File(file) as states:
+                heaps += [Heap(states[name]["pile"]) for name in sorted(states)]
+        return fitted_as_roul(heaps, phi_deg)
     if kind == "stiffness":
         return stiffness_of(files)
     if kind == "tails":

@@ -14,7 +14,9 @@ measure() { "$here/measure.py" "$@"; }
 states() { [ -e "$1.h5" ] || { xz -dkc "$here/states/$1.h5.xz" > "$1.h5.part" && mv "$1.h5.part" "$1.h5"; }; }
 set_files() { echo "grains.files=[\"$1.h5\"]"; }
 
-for name in pile-line-source pile-point-source-2000 pile-asymmetric-line pile-rest-300-awake; do states $name; done
+for name in pile-line-source pile-point-source-2000 pile-asymmetric-line pile-rest-{300-awake,800-awake,800-sleeping}; do
+  states $name
+done
 
 measure forces pile-fields-line pile-line-source.h5 --member states
 measure forces pile-fields pile-point-source-2000.h5 --member grains_2000
@@ -59,6 +61,10 @@ for k in 1 2 3 4 5 6 7 8; do
   [ ! -e "$grown-$k.h5.xz" ] || [ -e "memory-$k.h5" ] || xz -dkc "$grown-$k.h5.xz" > "memory-$k.h5"
 done
 [ ! -e memory-1.h5 ] || measure memory pile-point-source memory-?.h5 --member recorded_800
+[ ! -e memory-8.h5 ] || {
+  measure heap pile-point-source pile-rest-800-{awake,sleeping}.h5 memory-?.h5 --member grains_800
+  measure roul_fit fit-cantelaube-point pile-rest-800-{awake,sleeping}.h5 memory-?.h5 --member grains_800 --phi 28
+}
 # What is predicted is committed before: predict.py make PROGRAM pile-point-source-2000.h5 narrow-{0..7} --name point-2000
 [ ! -e "$here/predictions/point-2000.json" ] ||
   "$here/predict.py" compare pile-point-source-2000.h5 --name point-2000

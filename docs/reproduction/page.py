@@ -70,7 +70,11 @@ result" means not run or not measured; the row says which.
 - **"Hardly changes"** means by less than a tenth in our whole interval. "Changes" means by more than a tenth in our
   whole interval. Between them the spread is too wide to tell. "Negligible" means less than a tenth of the
   effect of μ, likewise.
-- **Causes.** Some rows that differ end with the cause, or with what was tried in vain.
+- **Variants of Wellmann's packings** are compared packing by packing: the error is that of the mean difference or
+  ratio over the packings that both have.
+- **A sheared sample that collapses**, its mean stress below a tenth of its start, agrees with nothing.
+- **Causes.** Some rows that differ end with the cause, or with what was tried in vain. Behind a change is what ours
+  becomes by it alone.
 - **The steeper flank** is the flank with the larger mean, on whichever side. The study's page says which side was
   meant.
 - **Nothing was tuned to agree.** What counts as theirs in Roul's section 1.3 and figures 2.3, 2.4, 3.4, 3.5, 3.7, 3.8,

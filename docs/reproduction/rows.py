@@ -4,9 +4,10 @@ A row is a number or a word. A number has `range`, the source's value with its r
 `key`, ours; `effect` is what a ratio's distance from 1 says in the source. A word comes from a number by
 `limits`, or from a rule by name; `agrees` lists the words of ours that agree with the source's. A row that
 has no result says in `gap` why: "not run", or "not measured" where no study has such a figure. A word
-with `single` has no error over realizations, and decides nothing. `cause` says why a row differs, or what
-was tried; a row that does not differ does not show it. A number with `piles` is tested: that many piles of the
-source gave its value, so its mean has an error, too, which is taken by the scatter of ours; `alternative` is the
+with `single` has no error over realizations, and decides nothing. `cause` says why a row differs, and
+"{KEY@MEMBER}" in it becomes that number; a row that does not differ does not show it. Where a study has CAUSES, the
+row adds what it becomes when one thing changes, or, without a cause, says "cause not found; tried: ...". A number
+with `piles` is tested: that many piles of the source gave its value, so its mean has an error, too, which is taken by the scatter of ours; `alternative` is the
 value that the row is to tell from it.
 """
 from __future__ import annotations
@@ -28,6 +29,15 @@ FILES = ("roul-piles", "roul-fits", "roul-layers", "wellmann", "liffman")
 NOT_RUN = "not run"
 WIDE = "spread too wide to tell"
 COARSE = "nearer than the recorded strains can tell"
+#: What was changed alone in a study that differs, by study: where its results are (MEMBER_CHANGE), and the changes.
+CAUSES = {"wellmann-box": ("wellmann-box-causes", {
+    "densest": "densest packing", "dense": "denser packing", "loose": "looser packing", "smooth": "smooth walls",
+    "pressed": "start at 10 kPa", "slow": "a tenth of the rate", "half_rate": "half the rate",
+    "half_step": "half the step", "tight": "tighter rest"})}
+#: Changes whose runs end at a strain of 0.04, and what their keys then name.
+SHORT, WITHIN_SHORT = ("slow",), re.compile("at_0.0[24]|early|middle")
+#: A sheared sample whose mean stress falls below this share of its start bears nothing: none of its figures agrees.
+COLLAPSED = 0.1
 TOO_WIDE = 0.5  #: share of the value, or of the effect, that half of our 95 % interval may take
 
 Row = dict[str, Any]
@@ -88,6 +98,9 @@ def _ratio(row: Row, results: Results) -> Measured | None:
     pair = _pair(row, results)
     if pair is None:
         return None
+    together = _together(row, results, "over")
+    if together is not None:
+        return together
     b, a = pair
     ratio = a.value / b.value
     rho = min(max(ratio, row["range"][0]), row["range"][1])
@@ -152,14 +165,26 @@ def _pair(row: Row, results: Results) -> tuple[Measured, Measured] | None:
     return None if a is None or b is None else (a, b)
 
 
+def _together(row: Row, results: Results, word: str) -> Measured | None:
+    """The mean difference ("less") or ratio ("over") of a pair over the packings that both have, where collect.py has
+    made it: most of the scatter of packings is common to both."""
+    if "from" not in row:
+        return None
+    pair, member = f"{row['to']}_{word}_{row['from']}", row.get("member", "")
+    found = results.number(row["study"], *((row["key"], pair) if "key" in row else (pair, member)))
+    return found if found is not None and math.isfinite(found.error) else None
+
+
 def _change(row: Row, results: Results) -> tuple[Measured, float] | None:
     """The second of a pair less the first, and the value of the first.
 
-    Samples of one seed share their first state where only the friction differs; the error is that
-    of independent ones, which is no less.
+    Samples of one seed share their first state where only the friction differs; where their differences were not
+    collected the error is that of independent ones, which is no less.
     """
     pair = _pair(row, results)
-    return None if pair is None else (pair[1].less(pair[0]), pair[0].value)
+    if pair is None:
+        return None
+    return _together(row, results, "less") or pair[1].less(pair[0]), pair[0].value
 
 
 def _rises(row: Row, results: Results) -> str | None:
@@ -212,6 +237,8 @@ def _contraction(row: Row, results: Results) -> str | None:
         return None
     falls, rises = down.value > down.half, up.value > up.half
     word = ", then ".join(["contraction"] * falls + ["dilation"] * rises) or "neither"
+    if math.isnan(down.error):
+        return f"undecided: trace/3 falls by {down.value:.5f}, then rises by {up.value:.5f}"
     then = f"then rises by {up.value:.5f} ± {up.error:.5f}"
     if up.value == 0 and up.error == 0:
         then = "least at the end"
@@ -577,9 +604,61 @@ def note_of(row: Row, results: Results) -> str:
     return "; " + note["says"].format(value=value) if value is not None and value > note["above"] else ""
 
 
-def cause_of(row: Row, said: str) -> str:
-    """Why ours differs: "; ..." behind the agreement, or nothing."""
-    return f"; {row['cause']}" if "cause" in row and said.startswith("differs") else ""
+def members_of(row: Row) -> list[str]:
+    """The members of a sweep that a row reads."""
+    return [row[end] for end in ("member", "from", "to") if end in row and not (end != "member" and "member" in row)]
+
+
+def tried_of(row: Row, results: Results) -> list[str]:
+    """What ours becomes by each change of CAUSES that has run: "denser packing 0.80 ± 0.01"."""
+    if row["study"] not in CAUSES:
+        return []
+    study, changes = CAUSES[row["study"]]
+    out = []
+    for change, words in changes.items():
+        if change in SHORT and not WITHIN_SHORT.search(row.get("key", "")):
+            continue
+        ends = {end: f"{row[end]}_{change}" for end in ("member", "from", "to") if row.get(end) in members_of(row)}
+        found = rule_of(row)({**row, **ends, "study": study}, results)
+        if isinstance(found, Measured):
+            out.append(f"{words} {number_text(found, row)}")
+        elif found is not None:  # a word, or the percents alone of an undecided one
+            word, _, why = found.partition(": ")
+            out.append(f"{words} {why.rpartition(', ')[2] if word in SILENT and '%' in why else why}")
+    return out
+
+
+def filled(cause: str, row: Row, results: Results) -> str:
+    """A cause with its numbers."""
+
+    def number(name: re.Match[str]) -> str:
+        found = results.number(row["study"], name[1], name[2])
+        return "not run" if found is None else number_text(found, {})
+
+    return re.sub(r"\{([\w.]+)@(\w+)\}", number, cause)
+
+
+def cause_of(row: Row, said: str, results: Results) -> str:
+    """Why ours differs, and what was tried: "; ..." behind the agreement, or nothing."""
+    if not said.startswith("differs"):
+        return ""
+    parts, tried = [filled(row["cause"], row, results)] if "cause" in row else [], tried_of(row, results)
+    if tried:
+        before = "" if "tried: " in "".join(parts) else "tried: " if parts else "cause not found; tried: "
+        parts.append(before + ", ".join(tried))
+    elif not parts and row["study"] in CAUSES:
+        parts.append("cause not found; tried: nothing yet")
+    return "".join(f"; {part}" for part in parts)
+
+
+def borne(row: Row, said: str, results: Results) -> str:
+    """The agreement, unless the sample has collapsed."""
+    shares = [results.plain(row["study"], f"sample.pressure_ratio.{member}") for member in members_of(row)
+              if member.startswith("shear_")]
+    least = min((share for share in shares if share is not None), default=1.0)
+    if not said.startswith("agrees") or least >= COLLAPSED:
+        return said
+    return f"collapsed, agrees with nothing: the mean stress falls to {least:.2g} of its start"
 
 
 def judged(row: Row, results: Results) -> tuple[str, str]:
@@ -588,10 +667,10 @@ def judged(row: Row, results: Results) -> tuple[str, str]:
     if found is None:
         return row.get("gap", NOT_RUN) if results.has(row["study"]) else NOT_RUN, ""
     if isinstance(found, Measured):
-        said = of_test(found, row, results) if "piles" in row else agreement(found, row)
-        return number_text(found, row), said + cause_of(row, said) + note_of(row, results)
+        said = borne(row, of_test(found, row, results) if "piles" in row else agreement(found, row), results)
+        return number_text(found, row), said + cause_of(row, said, results) + note_of(row, results)
     if row.get("single"):
         return found, "no error, no statement"
     word = found.partition(":")[0]
-    said = SILENT.get(word, "agrees" if word in row["agrees"] else "differs")
-    return found, said + cause_of(row, said) + note_of(row, results)
+    said = borne(row, SILENT.get(word, "agrees" if word in row["agrees"] else "differs"), results)
+    return found, said + cause_of(row, said, results) + note_of(row, results)

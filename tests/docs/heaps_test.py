@@ -120,6 +120,39 @@ def test_averages_over_a_circle_are_those_of_the_uniform_field():
     assert found.density_ratio(heaps.RVE / 2) == pytest.approx(1 / (1 - 0.1955), rel=0.05)
 
 
+def test_fixed_grains_are_a_floor():
+    """The lowest row of squares fixed: the rest is the heap on its tops, whichever of both grains is named first."""
+    made = state(wedge, stress=((-0.4, 0.1), (0.1, -1)))
+    height = made["grains"]["position"][:, 1]
+    made["grains"]["fixed"] = (height < SIDE).astype(int)
+    made["grains"]["radius"] = numpy.full(len(height), 0.49 * SIDE)  # to the tops of the squares
+    contacts = made["contacts"]
+    half = numpy.arange(len(contacts["i"])) % 2 == 0
+    half &= contacts["j"] >= 0
+    contacts["i"][half], contacts["j"][half] = contacts["j"][half], contacts["i"][half].copy()
+    contacts["force"][half] *= -1
+    contacts["normal"][half] *= -1
+    got = heaps.Heap(made)
+    assert got.floor == pytest.approx(SIDE, abs=0.02 * SIDE)
+    assert got.height == pytest.approx(0.3 - SIDE, abs=SIDE) and len(got.places) == (height > SIDE).sum()
+    _, force = got.through(0)
+    assert force.sum() * got.pressure * got.height == pytest.approx(got.half_left + got.half_right, rel=0.03)
+    assert got.dip(0) * got.pressure == pytest.approx(0, abs=0.12)
+    assert got.axis_ratio(0.1, 0.6) == pytest.approx(0.4, rel=0.05)
+    stress = got.averaged(got.inside(0.3))["stress"].mean(axis=0)
+    assert stress * got.pressure == pytest.approx(numpy.array(((-0.4, 0.1), (0.1, -1))), rel=0.02, abs=0.01)
+
+
+def test_disks_have_the_frame_of_their_circles():
+    made = state(wedge)
+    for name in ("outline", "outline_start"):
+        del made["grains"][name]
+    made["grains"]["radius"] = numpy.full(len(made["grains"]["id"]), 0.5 * SIDE)
+    got = heaps.Heap(made)
+    assert got.height == pytest.approx(0.3, abs=SIDE)
+    assert math.degrees(math.atan(-got.right[0])) == pytest.approx(45, abs=0.5)
+
+
 def test_axes_turned_by_an_angle_are_found_turned_by_it():
     z = numpy.exp(2j * numpy.radians([-70, -60])) * (1, 2)
     assert heaps.angle_deg(z) == pytest.approx(-63.4, abs=0.2)

@@ -133,6 +133,7 @@ std::vector<LoadPlace> load_places(const dem::Snapshot& layer, const LayerFrame&
       const dem::Grain& g = layer.grains[near[k]];
       one.grains.push_back(g.id);
       sum += way_above(layer, place, g.position) / static_cast<double>(many);
+      one.depth += (frame.surface - g.position[up]) / static_cast<double>(many);
     }
     one.x = place.x() + sum.x();
     one.y = up == 2 ? place.y() + sum.y() : 0;

@@ -15,10 +15,11 @@
 
 namespace grainfield::coupling {
 
-/// Grains that share a load, and the middle of their places seen from above, m.
+/// Grains that share a load, the middle of their places seen from above, and their mean depth below
+/// the surface, m.
 struct LoadPlace {
   std::vector<std::int64_t> grains;
-  double x = 0, y = 0;
+  double x = 0, y = 0, depth = 0;
 };
 
 /// Places of the surface, evenly spread over the middle `span` of the width (in the plane) or over

@@ -17,6 +17,7 @@
 #include "coupling/studies/point_load/finished_layers.h"
 #include "coupling/studies/point_load/fitted.h"
 #include "coupling/studies/point_load/keys.h"
+#include "coupling/studies/point_load/layer_study.h"
 #include "coupling/studies/point_load/loaded_layers.h"
 #include "coupling/studies/point_load/page.h"
 #include "coupling/studies/point_load/predicted.h"
@@ -160,7 +161,7 @@ void check_point_load(const Case& value) {
 }
 
 Study point_load_study() {
-  Study out;
+  Study out = layer_study();
   out.name = "point-load";
   out.meaning =
       "grains under a load on one of them: stress models compared with the response or fitted to "
@@ -170,16 +171,6 @@ Study point_load_study() {
                   "fit.finite_elements=[\"fe_elastic_layer\", \"fe_orthotropic_layer\"]",
                   "fit.bootstrap=100"},
                  {{"verdict", "fit"}}}};
-  out.sections = {kGrainFilesKeys, kPackingKeys, kMaterialKeys, kMotionKeys,
-                  kRestKeys,       kLoadKeys,    kAverageKeys};
-  out.material = [](Case& c) -> dem::MaterialSetup& {
-    return c.get<dem::PointLoadSetup>().material;
-  };
-  out.grain_radius = [](const Case& c) {
-    return dem::mean_radius(c.get<dem::PointLoadSetup>().packing);
-  };
-  out.motion = [](Case& c) -> dem::MotionSetup& { return c.get<dem::PointLoadSetup>().motion; };
-  out.rest = [](Case& c) -> dem::RestSetup& { return c.get<dem::PointLoadSetup>().rest; };
   out.check = check_point_load;
   out.averaged = [](const Case& value) {
     const auto& average = value.get<AverageSetup>();
@@ -190,7 +181,6 @@ Study point_load_study() {
   out.without = {"fit.heights",  "fit.leave_out", "fit.width_diameters",
                  "fit.left_deg", "fit.right_deg", "fit.friction_deg",
                  "fit.huber"};
-  out.fills = {"F", "h", "dim", "depth"};
   out.make_run = make_layer;
   out.foresee = foresee_layer;
   out.left_unused = [](const Case& value) -> std::string {
@@ -208,8 +198,6 @@ Study point_load_study() {
     if (!value.get<FitSetup>().models.empty()) return analyse_fitted_load(value, files, threads);
     return analyse_point_load(value, files, threads);
   };
-  out.dimension = [](const Case& value) { return value.get<dem::PointLoadSetup>().packing.dim; };
-  out.dimension_key = "packing.dim";
   return out;
 }
 

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "continuum/moduli_by_depth.h"
 #include "coupling/case/case.h"
 #include "coupling/result/tables.h"
@@ -77,6 +79,12 @@ TEST(BoussinesqLimitRun, FromCaseToReport) {
       continuum::read_moduli_by_depth(folder / "out/moduli_by_depth.csv");
   EXPECT_NO_THROW(table.require_cover(number(s, "layer.depth")));
   EXPECT_THAT(read_text(folder / "out/displacements.csv"), HasSubstr("axis"));
+  // Labels name the table of a model without its folder, which is gone.
+  EXPECT_THAT(read_text(folder / "out/verdict.md"), HasSubstr("(base=rough, moduli=by_depth.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/.models_of_realization_000"));
+  // The surface is level with the highest disks of the lattice.
+  EXPECT_NEAR(number(s, "response.load_depth"), 0.0045, 1e-4);
+  EXPECT_LE(number(s, "rest.unbalanced_force_ratio"), 1e-9);
   EXPECT_THAT(read_text(folder / "out/report.html"), HasSubstr("by_depth_rough"));
 
   // From files, with another load: the same layers, the same moduli.

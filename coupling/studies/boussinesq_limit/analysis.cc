@@ -1,0 +1,288 @@
+#include "coupling/studies/boussinesq_limit/analysis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "coupling/averaging/ensemble.h"
+#include "coupling/observe/seen_models.h"
+#include "coupling/run/averaging_setup.h"
+#include "coupling/run/ensemble.h"
+#include "coupling/studies/boussinesq_limit/responses.h"
+#include "coupling/studies/boussinesq_limit/setup.h"
+#include "coupling/studies/point_load/probed_slabs.h"
+#include "coupling/studies/point_load/simulation.h"
+#include "dem/laws/registry.h"
+#include "dem/quasistatic/quasistatic.h"
+#include "dem/shared/computation_failed.h"
+#include "dem/storage_failed.h"
+
+namespace grainfield::coupling {
+namespace {
+
+// Balances to which layers are brought before anything is measured, the best that Newton's method
+// reaches: a small load on a deep layer changes contact forces by little, and disks that roll
+// between others may keep it from the last digits.
+constexpr std::array kRests{1e-9, 1e-8, 1e-7};
+// Finite elements are refined to this, far below the grains' noise: where shear is soft they need
+// many unknowns for more.
+constexpr const char* kFiniteElementTolerance = "1e-3";
+
+dem::Materials materials_of(const dem::MaterialSetup& m) {
+  dem::Materials out;
+  out.law = dem::law_of(m);
+  out.friction = m.friction;
+  out.rolling = dem::RollingLaw::of(m);
+  return out;
+}
+
+dem::QuasistaticResult at_rest(const dem::Snapshot& before, const dem::Materials& materials) {
+  dem::QuasistaticSettings how;
+  for (const double ratio : kRests) {
+    how.unbalanced_force_ratio = ratio;
+    try {
+      return dem::relax(before, materials, before.gravity, {}, how);
+    } catch (const ComputationFailed&) {
+      if (ratio == kRests.back()) throw;
+    }
+  }
+  return {};
+}
+
+struct RestingLayer {
+  dem::Snapshot rest;
+  LayerFrame frame;
+  std::vector<LoadPlace> places;
+};
+
+// Beside the results, which are not written while models read them; each member of a sweep has its
+// own.
+std::filesystem::path tables_of(const StudyResult& result) {
+  const std::filesystem::path first(result.realizations.front());
+  auto folder = first.parent_path();
+  if (folder.filename() == "checkpoint") folder = folder.parent_path();
+  return folder / (".models_of_" + first.stem().string());
+}
+
+class Analysis {
+ public:
+  Analysis(StudyResult& out, int threads)
+      : out_(out),
+        value_(out.value),
+        response_(value_.get<ResponseSetup>()),
+        setup_(value_.get<AverageSetup>()),
+        load_(value_.get<dem::PointLoadSetup>()),
+        dim_(load_.packing.dim),
+        materials_(materials_of(load_.material)),
+        threads_(threads) {}
+
+  Observations run(std::vector<ModelChoice>& models) {
+    for (const std::string& file : out_.realizations) prepare(read_realization(file));
+    predict(models);  // before the response is known
+    return observe();
+  }
+
+ private:
+  // At rest to many digits; and its moduli.
+  void prepare(const Realization& one) {
+    const dem::Snapshot& before = one["unloaded"];
+    RestingLayer layer;
+    const dem::QuasistaticResult rest = at_rest(before, materials_);
+    layer.rest = rest.state;
+    layer.frame = layer_frame(layer.rest);
+    layer.places =
+        load_places(layer.rest, layer.frame, response_.loads, response_.grains, response_.span);
+    if (layer.places.empty())
+      throw ComputationFailed("response.loads: the layer has no surface grain that touches others");
+    figures_["rest.unbalanced_force_ratio"].push_back(rest.unbalanced_force_ratio);
+    figures_["rest.contacts_changed"].push_back(rest.contacts_gained + rest.contacts_lost);
+    double below = 0;
+    for (const LoadPlace& place : layer.places) below += place.depth;
+    figures_["response.load_depth"].push_back(below / static_cast<double>(layer.places.size()));
+    const auto probed = probe_slabs(
+        layer.rest, materials_, layer.frame.surface,
+        {response_.strain, static_cast<int>(response_.slabs), static_cast<int>(response_.strips)});
+    slabs_.push_back(probed->slabs);
+    wholes_.push_back({probed->whole});
+    figures_["moduli.nonlinear_share"].push_back(probed->nonlinear);
+    figures_["moduli.contacts_changed"].push_back(probed->contacts_changed);
+    const auto count = static_cast<double>(out_.realizations.size());
+    depth_ += layer.frame.depth() / count;
+    diameter_ += mean_diameter(layer.rest) / count;
+    half_ = std::min(half_, reach_of(layer.places, layer.frame, dim_));
+    layers_.push_back(std::move(layer));
+  }
+
+  // A table that models read.
+  std::string write_table(const std::string& name, const std::vector<SlabModuli>& slabs) {
+    const std::string text = moduli_table(slabs, depth_, false);
+    out_.texts.emplace_back("moduli_" + name, text);
+    const auto folder = tables_of(out_);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    const auto path = folder / name;
+    std::ofstream file(path);
+    if (!(file << text) || !file.flush())
+      throw dem::StorageFailed(fmt::format("{}: cannot be written", path.string()));
+    return path.string();
+  }
+
+  static ModelChoice finite_elements(const std::string& name, const std::string& moduli) {
+    return {"", name, {{"moduli", moduli}, {"tolerance", kFiniteElementTolerance}}};
+  }
+
+  // Numbers of a model from the same measurement.
+  ModelChoice of_constants(const std::string& label, const std::string& name) const {
+    ModelChoice out{label, name, {}};
+    for (std::size_t k = 0; k < 5; ++k)
+      out.settings[limit_constants()[k]] = fmt::format("{:.9g}", whole_.mean[k]);
+    return out;
+  }
+
+  void predict(std::vector<ModelChoice>& models) {
+    const std::vector<SlabModuli> slabs = over_realizations(slabs_);
+    whole_ = over_realizations(wholes_).front();
+    for (std::size_t k = 0; k < limit_constants().size(); ++k) {
+      const std::string key = "moduli." + limit_constants()[k];
+      out_.summary[key] = whole_.mean[k];
+      if (std::isfinite(whole_.error[k])) out_.summary[key + ".standard_error"] = whole_.error[k];
+    }
+    const double growth =
+        slabs.back().mean[SlabConstants::e_v] / slabs.front().mean[SlabConstants::e_v];
+    out_.summary["moduli.growth"] = growth;
+    out_.summary["moduli.residual"] = whole_.residual_transverse;
+    const std::string by_depth = write_table("by_depth.csv", slabs);
+    const std::string homogeneous = write_table("homogeneous.csv", {whole_});
+    const bool space = dim_ == 3;
+    for (const char* base : {"rough", "smooth"}) {
+      ModelChoice one = space ? of_constants("", "transverse_layer")
+                              : finite_elements("fe_elastic_layer", homogeneous);
+      one.label = fmt::format("homogeneous_{}", base);
+      one.settings["base"] = base;
+      models.push_back(one);
+    }
+    models.push_back(space ? of_constants("", "transverse_half_space")
+                           : finite_elements("fe_elastic_half_space", homogeneous));
+    models.back().label = "homogeneous_half_space";
+    if (!response_.finite_elements) return;
+    for (const char* base : {"rough", "smooth"}) {
+      models.push_back(finite_elements("fe_elastic_layer", by_depth));
+      models.back().label = fmt::format("by_depth_{}", base);
+      models.back().settings["base"] = base;
+    }
+    models.push_back(finite_elements("fe_elastic_half_space", by_depth));
+    models.back().label = "by_depth_half_space";
+  }
+
+  SeenThrough through(double width) const {
+    AverageSetup setup = setup_;
+    setup.width = width;
+    SeenThrough out;
+    out.options = average_options(setup, "coarse_graining", diameter_, threads_);
+    out.kernel = seeing_kernel(out.options, dim_);
+    return out;
+  }
+
+  Observations observe() {
+    const double force = dem::force_of_load(load_);
+    if (setup_.half_width > 0) half_ = std::min(half_, setup_.half_width);
+    const std::vector<SeenThrough> both{
+        through(setup_.width > 0 ? setup_.width : setup_.width_diameters * diameter_),
+        through(response_.width_depths * depth_)};
+    const auto points = static_cast<Eigen::Index>(setup_.points);
+    const Eigen::VectorXd x = dim_ == 2 ? Eigen::VectorXd::LinSpaced(points, -half_, half_)
+                                        : Eigen::VectorXd::LinSpaced(points / 2 + 1, 0, half_);
+    std::vector<double> depths;
+    for (const double share : setup_.depths) depths.push_back(share * depth_);
+    std::vector<std::vector<Ensemble>> lines(both.size(), std::vector<Ensemble>(depths.size() + 1));
+    const double unit = whole_.mean[SlabConstants::e_v] / force * (dim_ == 3 ? depth_ : 1);
+    std::string moved = "realization,place,at_over_h,displacement\n";
+    for (std::size_t r = 0; r < layers_.size(); ++r) {
+      const RestingLayer& layer = layers_[r];
+      const MeanResponse one = mean_response(layer.rest, materials_, layer.frame, layer.places,
+                                             force, depths, depth_, x, both);
+      for (std::size_t t = 0; t < both.size(); ++t) {
+        for (std::size_t d = 0; d <= depths.size(); ++d) lines[t][d].add(one.lines[t][d]);
+      }
+      figures_["response.places"].push_back(one.places);
+      figures_["response.settlement"].push_back(one.settlement * unit);
+      figures_["response.out_of_balance"].push_back(one.out_of_balance);
+      figures_["response.base_over_load"].push_back(one.base_share);
+      for (Eigen::Index k = 0; k < x.size(); ++k) {
+        if (std::isfinite(one.surface[k]))
+          moved +=
+              fmt::format("{},surface,{:.5g},{:.6g}\n", r, x[k] / depth_, one.surface[k] * unit);
+      }
+      for (Eigen::Index k = 0; k < one.axis.size(); ++k) {
+        const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(one.axis.size());
+        if (std::isfinite(one.axis[k]))
+          moved += fmt::format("{},axis,{:.5g},{:.6g}\n", r, at, one.axis[k] * unit);
+      }
+    }
+    out_.texts.emplace_back("displacements.csv", moved);
+    add_figures(out_.summary, figures_);
+    out_.summary["layer.depth"] = depth_;
+    out_.summary["layer.depth_diameters"] = depth_ / diameter_;
+    out_.summary["layer.mean_diameter"] = diameter_;
+    out_.summary["layer.half_width_depths"] = half_ / depth_;
+    Observations seen;
+    seen.specimen = Specimen::layer;
+    seen.realizations = static_cast<int>(layers_.size());
+    seen.scale = scale_of_load(force, depth_, dim_);
+    const double least = *std::min_element(depths.begin(), depths.end());
+    seen.told = {force, depth_, dim_, least, "", {}};
+    const std::vector<std::string> names{"w_diameters", "w_depths"};
+    for (std::size_t t = 0; t < both.size(); ++t) {
+      for (std::size_t d = 0; d <= depths.size(); ++d) {
+        const bool base = d == depths.size();
+        const std::string place =
+            base ? std::string("base") : fmt::format("depth_{:g}", setup_.depths[d]);
+        seen.lines.push_back(observed_line(
+            lines[t][d].with_samples(),
+            {dim_ == 3 ? "sigma_zz" : "sigma_yy",
+             fmt::format("{}, w = {:.3g} m", place, both[t].options.width), place + "_" + names[t],
+             base ? Smoothing::marginal : Smoothing::kernel, dim_ == 3},
+            both[t].kernel));
+      }
+    }
+    return seen;
+  }
+
+  StudyResult& out_;
+  const Case& value_;
+  const ResponseSetup& response_;
+  const AverageSetup& setup_;
+  const dem::PointLoadSetup& load_;
+  int dim_;
+  dem::Materials materials_;
+  int threads_;
+  std::vector<RestingLayer> layers_;
+  std::vector<std::vector<SlabModuli>> slabs_, wholes_;
+  SlabModuli whole_;
+  double depth_ = 0, diameter_ = 0, half_ = std::numeric_limits<double>::infinity();
+  FigureSamples figures_;
+};
+
+}  // namespace
+
+const std::vector<std::string>& limit_constants() {
+  static const std::vector<std::string> names{"E_h", "E_v", "nu_h", "nu_v", "G_v", "E", "nu"};
+  return names;
+}
+
+Observations predict_and_observe(StudyResult& result, std::vector<ModelChoice>& models,
+                                 int threads) {
+  return Analysis(result, threads).run(models);
+}
+
+void remove_tables(const StudyResult& result) {
+  std::error_code error;
+  std::filesystem::remove_all(tables_of(result), error);
+}
+
+}  // namespace grainfield::coupling

@@ -1,0 +1,337 @@
+#!/usr/bin/python3
+"""Prints the tables of docs/cases/boussinesq-limit.md, or puts them into the page, and draws its picture.
+
+    docs/reproduction/limit.py [--write] [--picture PICTURE] [--states FOLDER]
+
+Reads the runs of the LISTS in states/boussinesq/ and states/boussinesq-space/ (runs/next.py computes them): the
+figures in NAME.json, and on the axis NAME.profiles.csv where it is kept. A misfit is the root of the squared
+distance of the grains' mean from a prediction less the variance of that mean, over the root of the squared
+prediction; where it is within its noise, "<" and the upper end of 95 % stand for it. "–" has not run.
+--write replaces the tables of the page that have the same heads. Needs gnuplot for the picture.
+"""
+import argparse
+import csv
+import json
+import math
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+from scipy import stats
+
+HERE = pathlib.Path(__file__).resolve().parent
+PAGE = HERE.parent / "cases" / "boussinesq-limit.md"
+LISTS = ("boussinesq", "boussinesq-space")
+ROUGH = "rough"  # the base on which no contact slides
+HOMOGENEOUS, BY_DEPTH = f"homogeneous_{ROUGH}", f"by_depth_{ROUGH}"
+REGIONS = {"base": "on the base", "axis": "on the axis", "all": "of all profiles"}
+AT = 0.25  # of the depth: where the axis is looked at
+RIGHT = (2, 5, 10, 20)  # %
+COLOURS = {HOMOGENEOUS: "#1a5fa8", BY_DEPTH: "#c5502f"}
+POINTS = {0.0: 6, 0.2: 4, 0.5: 7, 1.0: 9}  # gnuplot's, by friction
+
+
+class Run:
+    """A finished run: its figures, what its settings say, and its axis."""
+
+    def __init__(self, folder, name, settings):
+        record = json.loads((folder / f"{name}.json").read_text())
+        self.name, self.summary, self.cpu = name, record["summary"], record["cpu_seconds"]
+        given = dict(s.split("=", 1) for s in settings)
+        self.friction = float(given.get("material.friction", 0.5))
+        self.grains = int(given.get("response.grains", 1))
+        self.shape = "spheres" if given.get("packing.dim") == "3" else {"irregular": "pentagons"}.get(
+            given.get("packing.shape"), "disks")
+        self.width = next((float(value) for key, value in given.items() if key.endswith("packing.width")), None)
+        file = folder / f"{name}.profiles.csv"
+        self.profiles = file.read_text() if file.exists() else ""
+
+    def number(self, key):
+        value = self.summary.get(key)
+        return math.nan if value is None or isinstance(value, str) else float(value)
+
+    @property
+    def layers(self):
+        return int(self.number("ensemble.realizations"))
+
+    @property
+    def depth(self):
+        return self.number("layer.depth_diameters")
+
+    @property
+    def force(self):
+        return self.number("load.force")
+
+    def misfit(self, model, region, kernel="w_depths"):
+        return Misfit(self, f"limit.{model}.{region}.{kernel}")
+
+    def axis(self, model, kernel):
+        """On the axis at each depth over h: grains, their standard error, the model; {} where it is not kept."""
+        out = {}
+        for row in csv.DictReader(line for line in self.profiles.splitlines() if not line.startswith("#")):
+            width = float(re.search(r"w = (\S+) m", row["profile"])[1]) / self.number("layer.depth")
+            if abs(float(row["x_m"])) < 1e-9 and (abs(width - 0.1) < 1e-3) == (kernel == "w_depths"):
+                values = [float(row[next(key for key in row if re.fullmatch(rf"{part}_N/m2?", key))])
+                          for part in ("simulation", "standard_error", model)]
+                out[round(float(row["depth_m"]) / self.number("layer.depth"), 3)] = values
+        first = f"compare.{model}.peak"  # of the first profile, which is at AT and at fixed width over d
+        if not out and kernel == "w_diameters" and first in self.summary:
+            return {AT: [self.number(key) for key in ("response.peak", "response.peak.standard_error", first)]}
+        return out
+
+    def excess(self, model, kernel, at=AT):
+        """Of the grains over the model on the axis, and its standard error; nan where it is not kept."""
+        grains, error, own = self.axis(model, kernel).get(at, [math.nan] * 3)
+        return grains / own - 1, error / own
+
+    def shift(self, model, kernel, at):
+        """By how much less deep than h AT, over d, the model has the grains' stress on the axis, and its error."""
+        axis = self.axis(model, kernel)
+        if at not in axis or len(axis) < 2:
+            return math.nan, math.nan
+        depths = sorted(axis)
+        k = depths.index(at)
+        low, high = depths[max(k - 1, 0)], depths[min(k + 1, len(depths) - 1)]
+        slope = math.log(axis[low][2] / axis[high][2]) / math.log(high / low)  # of the model's decay there
+        value, error = self.excess(model, kernel, at)
+        z = at * self.depth
+        return z * (1 - (1 + value) ** (-1 / slope)), z / slope * error / (1 + value)
+
+
+class Misfit:
+    """The misfit beyond noise of limit.*, %."""
+
+    def __init__(self, run, key):
+        self.squared, error, noise = (run.number(f"{key}.{name}") for name in ("squared", "squared.standard_error", "noise"))
+        self.bound = 100 * run.number(f"{key}.right_to")
+        least = run.layers - 1
+        self.known = math.isfinite(self.squared) and math.isfinite(self.bound)
+        #: of the square: the jackknife's, and that of one mode of noise, as the bound has it
+        scatter = math.hypot(error, math.sqrt(2) * noise)
+        self.resolved = self.known and self.squared > stats.t.ppf(0.95, least) * scatter
+        self.value = 100 * math.sqrt(max(self.squared, 0)) if self.known else math.nan
+        self.error = 100 * error / 2 / math.sqrt(self.squared) if self.resolved else math.nan
+        self.low = 100 * math.sqrt(max(self.squared - error, 0)) if self.known else math.nan
+        self.high = 100 * math.sqrt(max(self.squared + error, 0)) if self.known else math.nan
+
+    def cell(self):
+        if not self.known:
+            return "–"
+        if not self.resolved:
+            return f"< {shown(self.bound)}"
+        digits = 0 if self.error >= 2 else 1
+        return f"{self.value:.{digits}f} ± {self.error:.{digits}f}"
+
+    def right(self):
+        """The smallest of RIGHT that the bound is below, or that there is none."""
+        if not self.known:
+            return "–"
+        return next((f"{x} %" for x in RIGHT if self.bound < x), "not resolved")
+
+
+def shown(value):
+    """Two digits."""
+    return f"{value:.0f}" if value >= 10 else f"{value:.1f}"
+
+
+def percent(value, error=math.nan):
+    if not math.isfinite(value):
+        return "–"
+    if not math.isfinite(error):
+        return f"{100 * value:.1f} %"
+    return f"{100 * value:.1f} ± {100 * error:.1f} %"
+
+
+def read_list(file):
+    """Names and settings of a list of runs/next.py."""
+    lines = (shlex.split(line, comments=True) for line in file.read_text().splitlines())
+    return [(words[0], words[3:]) for words in lines if len(words) > 2]
+
+
+def finished(states):
+    """The runs that are there, by depth and friction."""
+    runs = []
+    for name in LISTS:
+        listed = HERE / "runs" / f"{name}.txt"
+        for run, settings in read_list(listed) if listed.exists() else []:
+            if (states / name / f"{run}.json").exists():
+                runs.append(Run(states / name, run, settings))
+    return sorted(runs, key=lambda run: (run.shape, run.depth, run.friction, run.grains))
+
+
+def usual(runs):
+    """Those of the usual width under a load on one grain; of a run and its larger ensemble NAME-more the latter."""
+    names = {run.name for run in runs}
+    return [run for run in runs if run.grains == 1 and run.width is None and f"{run.name}-more" not in names]
+
+
+def table(head, rows):
+    """Of Markdown; nothing without rows."""
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
+
+
+def of(run):
+    """What layer it is, as the first cells of every table."""
+    wide = f"{run.number('dem.layer_width') / run.number('layer.depth'):.0f} depths wide" if run.width else ""
+    what = ", ".join(word for word in (run.shape, wide) if word not in ("", "disks"))
+    return [f"{run.depth:.1f}" + (f" ({what})" if what else ""), f"{run.friction:g}"]
+
+
+def misfits(runs):
+    head = ["depth / d", "μ", "layers"]
+    for region in REGIONS.values():
+        head += [f"{region}: one stiffness", "by depth"]
+    rows = []
+    for run in usual(runs) + [run for run in runs if run.width is not None]:
+        pairs = [run.misfit(model, region).cell() for region in REGIONS for model in (HOMOGENEOUS, BY_DEPTH)]
+        rows.append(of(run) + [f"{run.layers}"] + pairs + [run.misfit(BY_DEPTH, "all").right()])
+    return table(head + ["right to"], rows)
+
+
+def bases(runs):
+    head = ["depth / d", "μ", "half space", "layer, smooth base", "layer, rough base", "the judge's words", "position"]
+    rows = []
+    for run in usual(runs):
+        models = ("by_depth_half_space", "by_depth_smooth", BY_DEPTH)
+        at, error = run.number("verdict.position"), run.number("verdict.position_error")
+        place = f"{at:.2f} ± {error:.2f}" if 0 <= at <= 1 else "beyond"
+        rows.append(of(run) + [run.misfit(model, "base").cell() for model in models] + [words(run), place])
+    return table(head, rows)
+
+
+def words(run):
+    """What the judge says of layer and half space."""
+    said = re.search(r" %\)?\. (.+?)(?: \(\d+ layers[^)]*\))?\. ", run.summary.get("verdict.sentence", ""))
+    return said[1] if said else "–"
+
+
+def shifted(value):
+    """A shift of shift()."""
+    return f"{value[0]:.2f} ± {value[1]:.2f}" if math.isfinite(value[0]) else "–"
+
+
+def causes(runs):
+    head = ["depth / d", "excess over one stiffness, w = 0.1 h", "over stiffness by depth", "w = 1.5 d",
+            "load on 3 disks, w = 0.1 h", "on 10 disks", "shift / d at 0.25 h", "at 0.5 h", "at 0.75 h",
+            "depth / d of the loaded centres"]
+    rows = []
+    for run in usual(runs):
+        if run.friction != 0.5 or run.shape != "disks":
+            continue
+        cells = [of(run)[0]]
+        cells += [percent(*run.excess(model, kernel)) for model, kernel in (
+            (HOMOGENEOUS, "w_depths"), (BY_DEPTH, "w_depths"), (HOMOGENEOUS, "w_diameters"))]
+        for grains in (3, 10):
+            name = run.name.replace("-mu-0.5", f"-grains-{grains}")
+            more = next((other for other in runs if other.name == name), None)
+            cells.append(percent(*more.excess(HOMOGENEOUS, "w_depths")) if more else "–")
+        cells += [shifted(run.shift(BY_DEPTH, "w_depths", at)) for at in (0.25, 0.5, 0.75)]
+        below = run.number("response.load_depth") / run.number("layer.mean_diameter")
+        rows.append(cells + [f"{below:.2f}" if math.isfinite(below) else "–"])
+    return table(head, rows)
+
+
+def linearity(runs):
+    head = ["depth / d", "μ", "load in weights of a disk", "contacts that close", "open", "begin to slide",
+            "peaks at 0.25, 0.5, 0.75 h and on the base", "E at the base over that at the surface"]
+    rows = []
+    for run in usual(runs):
+        shares = [percent(run.number(f"linearity.{name}"), run.number(f"linearity.{name}.standard_error"))
+                  for name in ("gained", "lost", "sliding")]
+        places = ("depth_0.25", "depth_0.5", "depth_0.75", "base")
+        peaks = ", ".join(f"{run.number(f'response.{place}_w_depths.peaks'):.0f}" for place in places)
+        rows.append(of(run) + [f"{run.number('linearity.weights'):.0f}", *shares, peaks,
+                               f"{run.number('moduli.growth'):.2f}"])
+    return table(head, rows)
+
+
+def costs(runs):
+    head = ["depth / d", "μ", "disks in a layer", "layers", "CPU min", "deposit and load",
+            "rest, moduli, response", "finite elements", "memory (MB)"]
+    rows = []
+    for run in usual(runs):
+        dem, fe, all_analysis = (run.number(f"time.{name}") for name in ("dem_cpu_s", "continuum_s", "analysis_s"))
+        rows.append(of(run) + [f"{run.number('dem.grains'):.0f}", f"{run.layers}", shown(run.cpu / 60), shown(dem / 60),
+                               shown((all_analysis - fe) / 60), shown(fe / 60), f"{run.number('memory.peak_MB'):.0f}"])
+    return table(head, rows)
+
+
+TABLES = (misfits, bases, causes, linearity, costs)
+
+
+def replaced(text, made):
+    """The text with each table whose head is that of a made one in its place."""
+    for new in made:
+        head = new.partition("\n")[0]
+        if head not in text:
+            sys.exit(f"{PAGE}: no table with the head \"{head}\"")
+        before, _, rest = text.partition(head)
+        after = re.sub(r"\A\n(\|.*\n)*", "", rest)
+        text = before + new + after
+    return text
+
+
+def block(name, rows):
+    return f"${name} << EOD\n" + "".join(" ".join(f"{x:.6g}" for x in row) + "\n" for row in rows) + "EOD\n"
+
+
+def draw(runs, picture):
+    """Three panels of misfit against depth, w = 0.1 h, and one of all profiles with w = 1.5 d."""
+    panels = [(region, "w_depths", f"{title}, w = 0.1 h") for region, title in REGIONS.items()]
+    panels.append(("all", "w_diameters", "of all profiles, w = 1.5 d"))
+    data, plots = "", ""
+    wide = max((run.depth for run in usual(runs)), default=10) * 1.25
+    most = 0.0
+    for number, (region, kernel, title) in enumerate(panels):
+        curves = []
+        for side, model in ((-1, HOMOGENEOUS), (1, BY_DEPTH)):
+            for place, (friction, point) in enumerate(POINTS.items()):
+                shift = 1 + side * (0.01 + 0.015 * place)  # points of equal depth stand side by side
+                rows = []
+                for run in usual(runs):
+                    if run.friction == friction and run.shape == "disks":
+                        m = run.misfit(model, region, kernel)
+                        if m.known:
+                            rows.append((run.depth * shift, m.value, m.low, max(m.high, m.value)))
+                            most = max(most, m.high if m.resolved else 0)
+                if not rows:
+                    continue
+                name = f"p{number}{model}{str(friction).replace('.', '')}".replace("_", "")
+                data += block(name, rows)
+                told = f"title 'μ = {friction:g}'" if number == 0 and model == HOMOGENEOUS else "notitle"
+                curves.append(f"${name} using 1:2:3:4 with yerrorbars pt {point} ps 0.7 lc rgb '{COLOURS[model]}' {told}")
+                curves.append(f"${name} using 1:2 with lines lc rgb '{COLOURS[model]}' notitle")
+        if curves:
+            plots += f"set title 'Misfit {title}'\nplot " + ", ".join(curves) + "\nunset key\nunset label\n"
+    if not plots:
+        sys.exit("limit.py: no run has ended; nothing to draw")
+    head = (f'set terminal svg size 960,800 background "white" font "sans,13"\nset output "{picture}"\n'
+            "set multiplot layout 2,2 margins 0.08,0.99,0.07,0.88 spacing 0.08,0.13\nset logscale x\nset xtics (8, 15, 30, 60, 120)\nset grid\n"
+            f"set xrange [6:{wide:g}]\nset yrange [0:{1.15 * most or 100:g}]\nset xlabel 'depth / mean diameter'\n"
+            "set ylabel 'misfit (%)'\nset key top right\n"
+            f"set label 1 'one stiffness' at screen 0.3,0.96 center tc rgb '{COLOURS[HOMOGENEOUS]}'\n"
+            f"set label 2 'stiffness by depth' at screen 0.75,0.96 center tc rgb '{COLOURS[BY_DEPTH]}'\n")
+    subprocess.run(["gnuplot"], input=data + head + plots + "unset multiplot\n", check=True, text=True)
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("--states", type=pathlib.Path, default=HERE / "states")
+    options.add_argument("--picture", type=pathlib.Path)
+    options.add_argument("--write", action="store_true", help="put the tables into the page")
+    given = options.parse_args()
+    runs = finished(given.states)
+    made = [one(runs) for one in TABLES]
+    if given.picture:
+        draw(runs, given.picture)
+    elif given.write:
+        PAGE.write_text(replaced(PAGE.read_text(), made))
+    else:
+        print("\n".join(made), end="")
+
+
+if __name__ == "__main__":
+    main()
