@@ -53,11 +53,10 @@ template <int W>
   const V t = 2 * reinterpret_cast<V>(rest) - 3, t2 = t * t, t4 = t2 * t2;
   const double* rows[W];
   for (int k = 0; k < W; ++k) rows[k] = table + kEllipseRow * part[k];
+  V columns_of_rows[kEllipseRow];
+  columns<W>(rows, columns_of_rows);
   const auto sum = [&](int first) {
-    V c[kEllipseRow / 2];
-    for (int n = 0; n < kEllipseRow / 2; ++n) {
-      c[n] = lanes_of<W>([&](int k) { return rows[k][first + n]; });
-    }
+    const V* c = columns_of_rows + first;
     return (c[0] + c[1] * t + (c[2] + c[3] * t) * t2) +
            t4 * ((c[4] + c[5] * t + (c[6] + c[7] * t) * t2) + t4 * c[8]);
   };

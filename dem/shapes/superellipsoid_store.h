@@ -130,8 +130,7 @@ class SuperellipsoidStore {
     p.slots[p.count++] = slot;
     p.i[slot] = &lanes_[i];
     p.j[slot] = &lanes_[j];
-    p.powers_i[slot] = &feature.powers_i;
-    p.powers_j[slot] = &feature.powers_j;
+    p.powers[slot] = &feature.powers;
     for (int k = 0; k < 3; ++k) {
       p.across[k][slot] = across[k];
       batch.overlaps.normal[k][slot] = feature.normal[k];

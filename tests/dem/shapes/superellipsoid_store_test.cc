@@ -94,7 +94,7 @@ TEST(SuperellipsoidStore, PowersThatFollowAreThoseTakenAnew) {
       for (double t = 0; t < 4; t += 2e-3) {
         pair.move(2e-3);
         PairNormal anew = memory;
-        anew.powers_i = anew.powers_j = {};
+        anew.powers = {};
         Overlap3 o, fresh;
         const bool touches = pair.store.overlap<Measures::curvatures>(0, pair.bodies[0], 1,
                                                                       pair.bodies[1], memory, o);
