@@ -38,22 +38,25 @@ class PairBatches {
         law_in_lanes_(takes_law()),
         act_(act) {}
 
-  /// Pair k, of grain i.
-  void add(int i, int k) {
-    auto& pair = world_.contacts.pairs[k];
+  /// Pair k, of grains i and j. Returns until when it may be left out (contact_list.h).
+  double add(int i, int j, int k) {
+    auto& feature = world_.contacts.pairs[k].feature;
     const auto& bodies = world_.grains.bodies;
-    typename World::Vector at = bodies[pair.j].position;
+    const auto& shapes = world_.grains.shapes;
+    typename World::Vector at = bodies[j].position;
     const bool across = is_across(k);
     if (across) at += world_.cell.shift(world_.contacts.images[k]);
-    if (!world_.grains.shapes.template put<World::Law::measures>(batch_, i, bodies[i], pair.j, at,
-                                                                 pair.feature)) {
-      return apart(i, k);
+    if (!shapes.template put<World::Law::measures>(batch_, i, bodies[i], j, at, feature)) {
+      apart(i, k);
+      const bool stays = dt_ > 0 && !balances_ && !rolls_ && !(across && world_.cell.flows());
+      return stays ? shapes.apart_until(i, bodies[i], j, at, feature) : 0;
     }
     const int slot = batch_.count - 1;
     first_[slot] = i;
     pair_[slot] = k;
-    if (law_in_lanes_) take_motion(slot, bodies[i], bodies[pair.j], across);
+    if (law_in_lanes_) take_motion(slot, bodies[i], bodies[j], across);
     if (batch_.count == kBatch) finish();
+    return 0;
   }
   /// All that is left.
   void finish() {
