@@ -1,7 +1,7 @@
 // Compiled for every width (lanes.h): no function of it may be another file's, too.
 #include "dem/shapes/pair_step.h"
 
-#include "dem/space/lanes.h"
+#include "dem/space/lane_rows.h"
 
 #define GRAINFIELD_INLINE [[gnu::always_inline]] inline
 
@@ -148,14 +148,9 @@ GRAINFIELD_INLINE LaneBodies<W> bodies_of(const LaneBody* const (&bodies)[kBatch
   static_assert(sizeof(LaneBody) == 16 * sizeof(double));
   const double* rows[W];
   for (int k = 0; k < W; ++k) rows[k] = bodies[slots[k]]->turn[0];
-  Lanes<W> c[16];
-  columns<W>(rows, c);
-  return {{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}},
-          {c[9], c[10], c[11]},
-          c[12],
-          c[13],
-          c[14],
-          c[15]};
+  const Four<W> a = four_of<W>(rows, 0), b = four_of<W>(rows, 4);
+  const Four<W> c = four_of<W>(rows, 8), d = four_of<W>(rows, 12);
+  return {{{a.a, a.b, a.c}, {a.d, b.a, b.b}, {b.c, b.d, c.a}}, {c.b, c.c, c.d}, d.a, d.b, d.c, d.d};
 }
 
 /// One body of each pair, where its outward normal is n (of the second: -n, with the same height).
@@ -237,19 +232,16 @@ GRAINFIELD_INLINE void step(PairBatch& batch, const int* slots, int count, bool 
     rows[k] = &kept[k]->i.level.inverse_ratio;
   }
   static_assert(sizeof(PairPowers) == 12 * sizeof(double));
-  V powers[12];
-  columns<W>(rows, powers);
-  const auto powers_of = [&](int number) {
-    const V* at = powers + 3 * number;
-    return LanePowers<W>{at[0], at[1], at[2], kept, number};
-  };
+  const Four<W> p = four_of<W>(rows, 0), q = four_of<W>(rows, 4), r = four_of<W>(rows, 8);
+  const LanePowers<W> level_i{p.a, p.b, p.c, kept, 0}, whole_i{p.d, q.a, q.b, kept, 1};
+  const LanePowers<W> level_j{q.c, q.d, r.a, kept, 2}, whole_j{r.b, r.c, r.d, kept, 3};
   const Vectors<W> n = vectors(o.normal), across = vectors(batch.across);
   // tangents_of.
   const V unit = with_sign(V{} + 1, n.z), a = -1 / (unit + n.z), b = n.x * n.y * a;
   const Vectors<W> tx{1 + unit * n.x * n.x * a, unit * b, -unit * n.x};
   const Vectors<W> ty{b, unit + n.y * n.y * a, -n.y};
-  const Side<W> i = side_of<W>(first, powers_of(0), powers_of(1), n, tx, ty);
-  const Side<W> j = side_of<W>(second, powers_of(2), powers_of(3), n, tx, ty);
+  const Side<W> i = side_of<W>(first, level_i, whole_i, n, tx, ty);
+  const Side<W> j = side_of<W>(second, level_j, whole_j, n, tx, ty);
 
   // f, its gradient and Hessian, and the step.
   const V f = i.height + j.height - dot<W>(n, across);

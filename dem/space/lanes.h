@@ -70,50 +70,6 @@ template <int W>
 [[gnu::always_inline]] inline void store(const Lanes<W>& x, double* to) {
   __builtin_memcpy(to, &x, sizeof x);
 }
-/// Changes the off-diagonal squares of `size` numbers of two rows, one step of a transposition.
-template <int W, int size>
-[[gnu::always_inline]] inline void exchange(Lanes<W>& a, Lanes<W>& b) {
-  const Lanes<W> x = a, y = b;
-  if constexpr (W == 2) {
-    a = __builtin_shufflevector(x, y, 0, 2);
-    b = __builtin_shufflevector(x, y, 1, 3);
-  } else if constexpr (W == 4 && size == 1) {
-    a = __builtin_shufflevector(x, y, 0, 4, 2, 6);
-    b = __builtin_shufflevector(x, y, 1, 5, 3, 7);
-  } else if constexpr (W == 4) {
-    a = __builtin_shufflevector(x, y, 0, 1, 4, 5);
-    b = __builtin_shufflevector(x, y, 2, 3, 6, 7);
-  } else if constexpr (size == 1) {
-    a = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14);
-    b = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
-  } else if constexpr (size == 2) {
-    a = __builtin_shufflevector(x, y, 0, 1, 8, 9, 4, 5, 12, 13);
-    b = __builtin_shufflevector(x, y, 2, 3, 10, 11, 6, 7, 14, 15);
-  } else {
-    a = __builtin_shufflevector(x, y, 0, 1, 2, 3, 8, 9, 10, 11);
-    b = __builtin_shufflevector(x, y, 4, 5, 6, 7, 12, 13, 14, 15);
-  }
-}
-/// The first N numbers of W rows of memory, lane by lane: out[n][k] = rows[k][n], N >= W.
-template <int W, int N>
-[[gnu::always_inline]] inline void columns(const double* const* rows, Lanes<W> (&out)[N]) {
-#pragma GCC unroll 16
-  for (int at = 0; at < N; at += W) {
-    const int first = at < N - W ? at : N - W;
-    Lanes<W> c[W];
-    for (int k = 0; k < W; ++k) c[k] = loaded<W>(rows[k] + first);
-    if constexpr (W == 8) {
-      for (int k = 0; k < 4; ++k) exchange<W, 4>(c[k], c[k + 4]);
-    }
-    if constexpr (W >= 4) {
-      for (int k = 0; k < W; ++k) {
-        if ((k & 2) == 0) exchange<W, 2>(c[k], c[k + 2]);
-      }
-    }
-    for (int k = 0; k < W; k += 2) exchange<W, 1>(c[k], c[k + 1]);
-    for (int n = 0; n < W; ++n) out[first + n] = c[n];
-  }
-}
 template <class M>
 [[gnu::always_inline]] inline bool any_of(const M& mask) {
 #if defined(__AVX512DQ__)
