@@ -200,6 +200,12 @@ GRAINFIELD_INLINE Side<W> side_of(const LaneBodies<W>& body, const LanePowers<W>
   return out;
 }
 
+/// Out of line: most lanes write a row.
+template <int W>
+[[gnu::noinline]] void scatter(const Lanes<W>& from, const int* slots, int count, double* to) {
+  for (int k = 0; k < count; ++k) to[slots[k]] = from[k];
+}
+
 /// A point along the tangents.
 template <int W>
 struct Pushed {
@@ -264,7 +270,7 @@ GRAINFIELD_INLINE void step(PairBatch& batch, const int* slots, int count, bool 
   normal = {normal.x * scale, normal.y * scale, normal.z * scale};
   const auto put = [&](const V& from, double* to) {
     if (in_row) return store<W>(from, to + slots[0]);
-    for (int k = 0; k < count; ++k) to[slots[k]] = from[k];
+    scatter<W>(from, slots, count, to);
   };
   const auto put_vector = [&](const Vectors<W>& from, double(*to)[kBatch]) {
     put(from.x, to[0]);
