@@ -40,19 +40,6 @@ class PairBatches {
         law_in_lanes_(takes_law()),
         act_(act) {}
 
-  /// What pair k will need of the memory, with its second grain j: its lists do not fit the
-  /// second-level cache. In line: a call that does nothing else is dropped.
-  [[gnu::always_inline]] void ask_for(int j, int k) const {
-    const auto ask = [](const auto& what) __attribute__((always_inline)) {
-      const auto* at = reinterpret_cast<const unsigned char*>(&what);
-      for (std::size_t byte = 0; byte < sizeof(what); byte += 64) __builtin_prefetch(at + byte);
-      __builtin_prefetch(at + sizeof(what) - 1);
-    };
-    ask(world_.contacts.pairs[k]);
-    ask(world_.contacts.pair_forces[k]);
-    ask(world_.grains.bodies[j]);
-    ask(world_.grains.shapes.lane_body_of(j));
-  }
   /// Pair k, of grains i and j. Returns until when it may be left out (contact_list.h).
   double add(int i, int j, int k) {
     auto& feature = world_.contacts.pairs[k].feature;

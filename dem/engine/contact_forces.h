@@ -1,7 +1,6 @@
 // Forces of single contacts, of pairs and of grains at walls: overlap, law and its memory,
 // resistance against rolling, the energy account. What adds them up is in sweep.h.
 #pragma once
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -92,11 +91,7 @@ class ContactForces {
                             .force;
                       });
     const double* ways = world_.grains.shapes.ways();
-    auto& list = world_.contacts.to_evaluate[static_cast<std::size_t>(rank)];
-    for (std::size_t n = 0; n < list.size(); ++n) {
-      const PairToEvaluate& later = list[std::min(n + kAhead, list.size() - 1)];
-      if (later.until <= 0) batch.ask_for(later.j, later.k);
-      PairToEvaluate& pair = list[n];
+    for (PairToEvaluate& pair : world_.contacts.to_evaluate[static_cast<std::size_t>(rank)]) {
       if (ways[pair.i] + ways[pair.j] < pair.until) continue;
       pair.until = batch.add(pair.i, pair.j, pair.k);
     }

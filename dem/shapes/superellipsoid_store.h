@@ -100,8 +100,6 @@ class SuperellipsoidStore {
   }
   Outline outline(int) const { return {}; }
   const Superellipsoid& superellipsoid(int i) const { return grains_[i].shape; }
-  /// What kernels read of a grain.
-  const LaneBody& lane_body_of(int i) const { return lanes_[i]; }
 
   template <Measures measures>
   bool overlap(int i, const Body<3>& a, int j, const Body<3>& b, Feature& feature,
