@@ -142,6 +142,7 @@ template <int W, class Law>
   using V = Lanes<W>;
   const V none{};
   const Three<W> arm_i = three<W>(o.arm_i, at), arm_j = three<W>(o.arm_j, at);
+  // Velocity and the first number of the spin; its others, the radius and the inverse mass.
   const Four<W> fast_i = four_of<W>(c.body_i + at, 3), slow_i = four_of<W>(c.body_i + at, 7);
   const Four<W> fast_j = four_of<W>(c.body_j + at, 3), slow_j = four_of<W>(c.body_j + at, 7);
   const Three<W> spin_i{fast_i.d, slow_i.a, slow_i.b}, spin_j{fast_j.d, slow_j.a, slow_j.b};
