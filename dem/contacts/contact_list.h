@@ -25,6 +25,14 @@ struct NearPair {
   Shape feature;  ///< of the shapes: where the narrow phase starts
 };
 
+/// Pair k of grains i and j, for a thread that evaluates many of them side by side. It is left out
+/// while the ways of both grains (shape.h) are together below `until`: the two do not touch, and it
+/// has no memory and no force.
+struct PairToEvaluate {
+  int i = 0, j = 0, k = 0;
+  double until = 0;
+};
+
 /// Contacts of bodies [0, n) in their order; a second grain may lie behind them (asleep). Such
 /// pairs come first in a row or behind those of the awake.
 template <int D, class Law, class Shape>
@@ -38,7 +46,10 @@ struct ContactList {
   std::vector<ForceSum<D>> felt;  ///< by sleepers, by pair, since the last search
   /// Normals of wall contacts in the step before, to the grain; 0: none, or a plane at rest.
   std::vector<VectorOf<D>> wall_normals;
-  Blocks blocks;  ///< not in a checkpoint: divide() makes them
+  // Not in a checkpoint: divide() makes them.
+  Blocks blocks;
+  std::vector<int> seconds;                              ///< second grains by pair, close together
+  std::vector<std::vector<PairToEvaluate>> to_evaluate;  ///< by thread, in the list's order
 
   void clear() {
     pairs.clear();
@@ -50,6 +61,26 @@ struct ContactList {
   void divide(int grains, int threads, bool sleepers_first = false) {
     blocks.divide(pairs, grains, threads, kPairsBehind, sleepers_first,
                   [&](int k) { return !images.empty() && is_image(images[k]); });
+    seconds.resize(pairs.with_idle());
+    for (std::size_t k = 0; k < seconds.size(); ++k) seconds[k] = pairs[static_cast<int>(k)].j;
+  }
+  /// After divide(), for shapes whose pairs are evaluated before any sum.
+  void list_pairs_to_evaluate(int grains, int threads) {
+    to_evaluate.resize(static_cast<std::size_t>(threads));
+    for (int rank = 0; rank < threads; ++rank) {
+      std::vector<PairToEvaluate>& list = to_evaluate[rank];
+      list.clear();
+      const PairsInOrder& crossing = blocks.crossing(rank);
+      for (int n = 0; n < crossing.count; ++n) {
+        list.push_back({crossing.first[n], crossing.second[n], crossing.pair[n]});
+      }
+      for (int i = blocks.first(rank); i < blocks.last(rank); ++i) {
+        for (int k = pairs.first(i); k < pairs.last(i); ++k) {
+          const int j = pairs[k].j;
+          if (j < blocks.last(rank) || j >= grains) list.push_back({i, j, k});
+        }
+      }
+    }
   }
   /// After the last pair. `with_images`: in a cell. What was felt has been gathered.
   void finish(bool with_images = false) {

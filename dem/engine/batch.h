@@ -2,6 +2,8 @@
 // where it has one. Bit by bit what pair by pair comes out; the forces go to the list of contacts,
 // 0 of pairs that do not touch.
 #pragma once
+#include <cstddef>
+
 #include "dem/engine/world.h"
 #include "dem/laws/contact_batch.h"
 
@@ -38,22 +40,25 @@ class PairBatches {
         law_in_lanes_(takes_law()),
         act_(act) {}
 
-  /// Pair k, of grain i.
-  void add(int i, int k) {
-    auto& pair = world_.contacts.pairs[k];
+  /// Pair k, of grains i and j. Returns until when it may be left out (contact_list.h).
+  double add(int i, int j, int k) {
+    auto& feature = world_.contacts.pairs[k].feature;
     const auto& bodies = world_.grains.bodies;
-    typename World::Vector at = bodies[pair.j].position;
+    const auto& shapes = world_.grains.shapes;
+    typename World::Vector at = bodies[j].position;
     const bool across = is_across(k);
     if (across) at += world_.cell.shift(world_.contacts.images[k]);
-    if (!world_.grains.shapes.template put<World::Law::measures>(batch_, i, bodies[i], pair.j, at,
-                                                                 pair.feature)) {
-      return apart(i, k);
+    if (!shapes.template put<World::Law::measures>(batch_, i, bodies[i], j, at, feature)) {
+      apart(i, k);
+      const bool stays = dt_ > 0 && !balances_ && !rolls_ && !(across && world_.cell.flows());
+      return stays ? shapes.apart_until(i, bodies[i], j, at, feature) : 0;
     }
     const int slot = batch_.count - 1;
     first_[slot] = i;
     pair_[slot] = k;
-    if (law_in_lanes_) take_motion(slot, bodies[i], bodies[pair.j], across);
+    if (law_in_lanes_) take_bodies(slot, bodies[i], bodies[j], across);
     if (batch_.count == kBatch) finish();
+    return 0;
   }
   /// All that is left.
   void finish() {
@@ -61,6 +66,7 @@ class PairBatches {
     world_.grains.shapes.template finish<World::Law::measures>(batch_);
     if constexpr (LawInLanes<typename World::Law>) {
       if (law_in_lanes_) {
+        place_rows();
         const auto& rule = world_.acting.rule(0, 0);
         rule.law.lanes(batch_.overlaps, rule.friction, dt_, contacts_, batch_.count);
       }
@@ -68,9 +74,7 @@ class PairBatches {
     for (int slot = 0; slot < batch_.count; ++slot) {
       if (!batch_.touches[slot]) {
         apart(first_[slot], pair_[slot]);
-      } else if (law_in_lanes_ && contacts_.left[slot] == 0) {
-        scatter(slot);
-      } else {
+      } else if (!law_in_lanes_ || contacts_.left[slot] != 0) {
         act_alone(first_[slot], pair_[slot], Shape::overlap_of(batch_, slot));
       }
     }
@@ -90,33 +94,31 @@ class PairBatches {
     return world_.cell.is_periodic() && is_image(world_.contacts.images[k]);
   }
 
-  void take_motion(int slot, const Body& a, const Body& b, bool across) {
-    const auto put = [slot](const typename World::Vector& from, double(&to)[3][kBatch]) {
-      for (int d = 0; d < 3; ++d) to[d][slot] = from[d];
-    };
-    typename World::Vector other = b.velocity;
-    if (across) other += world_.cell.drift(world_.contacts.images[pair_[slot]]);
-    put(a.velocity - other, contacts_.velocity);
-    put(a.spin, contacts_.spin_i);
-    put(b.spin, contacts_.spin_j);
-    contacts_.inverse_mass[slot] = a.inverse_mass + b.inverse_mass;
-    const auto& memory = world_.contacts.pairs[pair_[slot]].memory;
-    put(memory.spring, contacts_.spring);
-    if constexpr (LawInLanes<typename World::Law>) {
-      contacts_.contact_radius[slot] = memory.contact_radius;
-    }
+  void take_bodies(int slot, const Body& a, const Body& b, bool across) {
+    contacts_.body_i[slot] = reinterpret_cast<const double*>(&a);
+    contacts_.body_j[slot] = reinterpret_cast<const double*>(&b);
+    contacts_.across[slot] = across ? 1 : 0;
+    if (!across) return;
+    const typename World::Vector drift = world_.cell.drift(world_.contacts.images[pair_[slot]]);
+    for (int d = 0; d < 3; ++d) contacts_.drift[d][slot] = drift[d];
   }
-  void scatter(int slot) {
-    const auto vector = [slot](const double(&v)[3][kBatch]) {
-      return typename World::Vector(v[0][slot], v[1][slot], v[2][slot]);
-    };
-    const int k = pair_[slot];
-    world_.contacts.pair_forces[k] = {vector(contacts_.force), vector(contacts_.torque_i),
-                                      vector(contacts_.torque_j)};
-    auto& memory = world_.contacts.pairs[k].memory;
-    memory.spring = vector(contacts_.spring);
-    if constexpr (LawInLanes<typename World::Law>) {
-      memory.contact_radius = contacts_.contact_radius[slot];
+  /// Where the law reads and writes. What is in no slot, or does not touch, has nothing of its own.
+  void place_rows() {
+    using Pair = typename World::Pair;
+    static_assert(sizeof(Body) == 12 * sizeof(double) && sizeof(Force) == 9 * sizeof(double));
+    static_assert(offsetof(Pair, memory) == 0 && sizeof(Pair) >= 4 * sizeof(double));
+    for (int slot = 0; slot < batch_.count; ++slot) {
+      const int k = pair_[slot];
+      const bool touches = batch_.touches[slot];
+      contacts_.memory[slot] =
+          touches ? reinterpret_cast<double*>(&world_.contacts.pairs[k]) : contacts_.idle;
+      contacts_.force[slot] =
+          touches ? world_.contacts.pair_forces[k].force.data() : contacts_.idle;
+    }
+    for (int slot = batch_.count; slot < kBatch; ++slot) {
+      contacts_.body_i[slot] = contacts_.body_i[0];
+      contacts_.body_j[slot] = contacts_.body_j[0];
+      contacts_.memory[slot] = contacts_.force[slot] = contacts_.idle;
     }
   }
 

@@ -83,8 +83,6 @@ class ContactForces {
 
   /// In lanes: a thread evaluates the pairs within its block, and its share of those between two.
   [[gnu::noinline]] GRAINFIELD_FLATTEN void evaluate(int rank, double dt) {
-    const auto& contacts = world_.contacts;
-    const int last = contacts.blocks.last(rank);
     PairBatches batch(world_, dt, balances_, rolls_,
                       [&](const Rule& rule, const Body& a, const Body& b, const Overlap& o,
                           Memory& memory, int k) {
@@ -92,13 +90,10 @@ class ContactForces {
                                     world_.balance.pairs, k)
                             .force;
                       });
-    const PairsInOrder& crossing = contacts.blocks.crossing(rank);
-    for (int n = 0; n < crossing.count; ++n) batch.add(crossing.first[n], crossing.pair[n]);
-    for (int i = contacts.blocks.first(rank); i < last; ++i) {
-      for (int k = contacts.pairs.first(i); k < contacts.pairs.last(i); ++k) {
-        const int j = contacts.pairs[k].j;
-        if (j < last || j >= world_.awake) batch.add(i, k);
-      }
+    const double* ways = world_.grains.shapes.ways();
+    for (PairToEvaluate& pair : world_.contacts.to_evaluate[static_cast<std::size_t>(rank)]) {
+      if (ways[pair.i] + ways[pair.j] < pair.until) continue;
+      pair.until = batch.add(pair.i, pair.j, pair.k);
     }
     batch.finish();
   }

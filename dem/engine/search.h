@@ -83,6 +83,10 @@ class Search {
   /// has come from a checkpoint.
   void prepare() {
     world_.contacts.divide(world_.awake, team_.size(), World::sleepers_first);
+    if constexpr (requires { world_.grains.shapes.ways(); }) {
+      world_.contacts.list_pairs_to_evaluate(world_.awake, team_.size());
+      world_.grains.shapes.start_ways(world_.grains.bodies.data());
+    }
     if constexpr (dim == 3) {
       world_.round_margins.clear();
       for (const auto& m : world_.margins) {

@@ -384,12 +384,12 @@ class Sweep {
   void sum_pairs(int first, int end, int last, Evaluate evaluate, Vector& force,
                  SpinOf<dim>& torque) {
     auto& contacts = world_.contacts;
-    const auto& pairs = contacts.pairs;
+    const int* seconds = contacts.seconds.data();
     const int awake = world_.awake;
     for (int k = first; k < end; ++k) {
-      const int j = pairs[k].j;
-      const int later = pairs[k + kAhead].j;
-      __builtin_prefetch(&world_.grains.bodies[later], 1);
+      const int j = seconds[k];
+      const int later = seconds[k + kAhead];
+      if constexpr (!in_lanes) __builtin_prefetch(&world_.grains.bodies[later], 1);
       __builtin_prefetch(&sums_[later], 1);
       Force f;
       if (j >= last && j < awake) {

@@ -1,5 +1,5 @@
-// Contacts side by side: what a law's kernel reads beside the overlaps (overlap_batch.h), and what
-// it gives. Plain numbers.
+// Contacts side by side: what a law's kernel reads beside the overlaps (overlap_batch.h), and where
+// it writes. Bodies, memories and forces are read and written where the engine has them.
 #pragma once
 #include "dem/space/overlap_batch.h"
 
@@ -7,16 +7,16 @@ namespace grainfield::dem {
 
 /// By slot.
 struct alignas(64) ContactBatch {
-  double velocity[3][kBatch];                   ///< of the centre of i relative to that of j, m/s
-  double spin_i[3][kBatch], spin_j[3][kBatch];  ///< rad/s
-  double inverse_mass[kBatch];                  ///< sum of both, 1/kg
-  double spring[3][kBatch];                     ///< memory, in and out: its force on i, N
-  double contact_radius[kBatch];                ///< memory, in and out, m
-  double force[3][kBatch];                      ///< out: on i, N
-  double torque_i[3][kBatch], torque_j[3][kBatch];  ///< out: about the centres, N m
-  /// Out, not 0: nothing has been done, because the contact turns by more in a step than the
+  const double *body_i[kBatch], *body_j[kBatch];  ///< numbers of a Body<3>
+  /// Not 0: the second body is an image, faster by this drift, m/s.
+  double across[kBatch], drift[3][kBatch];
+  /// Four numbers, in and out: a SpringMemory<3> with what comes behind it, or a HertzMemory<3>.
+  double* memory[kBatch];
+  double* force[kBatch];  ///< out: numbers of a ContactForce<3>
+  /// Out, not 0: the memory is as it was, because the contact turns by more in a step than the
   /// kernel's series allow.
   double left[kBatch];
+  double idle[12];  ///< for memories and forces that nobody asks for
 };
 
 }  // namespace grainfield::dem

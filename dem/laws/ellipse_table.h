@@ -12,7 +12,7 @@
 #include <cstdint>
 
 #include "dem/laws/elliptic.h"
-#include "dem/laws/elliptic_lanes.h"
+#include "dem/laws/contact_lanes.h"
 #include "dem/space/rotation.h"
 
 namespace grainfield::dem {

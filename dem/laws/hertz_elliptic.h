@@ -110,9 +110,10 @@ struct HertzEllipticLaw {
   /// The same for contacts side by side, and the forces at the bodies: contacts 0 to count - 1, for
   /// dt > 0. Those that are `left` are for operator().
   void lanes(const OverlapBatch& o, double mu, double dt, ContactBatch& c, int count) const {
-    elliptic_forces({young, effective_young(), poisson, damping, displacement, least_radius,
-                     most_radius, mu, dt, EllipseTable::get().coefficients()},
-                    o, c, count);
+    contact_forces(
+        EllipticNumbers{young, effective_young(), poisson, damping, displacement, least_radius,
+                        most_radius, mu, dt, EllipseTable::get().coefficients()},
+        o, c, count);
   }
   /// The ellipse's table has every ratio of curvatures within the bounds of the radii.
   bool has_lanes() const { return most_radius < EllipseTable::kMostRatio / 2 * least_radius; }

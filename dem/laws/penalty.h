@@ -5,6 +5,7 @@
 //   spring c_T v_t dt, capped at mu F_n
 #pragma once
 #include "dem/laws/contact.h"
+#include "dem/laws/contact_lanes.h"
 #include "dem/laws/edge_measure.h"
 #include "dem/laws/material_setup.h"
 #include "dem/laws/sphere_lanes.h"
@@ -49,7 +50,13 @@ struct PenaltyLaw {
             friction_force(normal, mu, tangential_stiffness_, 0.0, m.slip, dt, memory.spring)};
   }
 
-  /// The same for spheres side by side.
+  /// The same for contacts side by side, as of hertz_elliptic.
+  void lanes(const OverlapBatch& o, double mu, double dt, ContactBatch& c, int count) const {
+    contact_forces(PenaltyNumbers{normal_stiffness, tangential_stiffness_, damping, mu, dt}, o, c,
+                   count);
+  }
+  static constexpr bool has_lanes() { return true; }
+  /// And for spheres.
   static constexpr SphereLawKind sphere_kind = SphereLawKind::penalty;
   RoundNumbers round_numbers(double mu, double dt) const {
     return {sphere_kind, normal_stiffness, tangential_stiffness_, 2 * damping, 0, false, false, mu,

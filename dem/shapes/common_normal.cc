@@ -355,8 +355,7 @@ Stepped step_alone(const TurnedBody& i, const TurnedBody& j, const Vector3d& acr
   pair.slots[0] = 0;
   pair.i[0] = &first;
   pair.j[0] = &second;
-  pair.powers_i[0] = &memory.powers_i;
-  pair.powers_j[0] = &memory.powers_j;
+  pair.powers[0] = &memory.powers;
   pair.overlaps = &o;
   for (int k = 0; k < 3; ++k) {
     pair.across[k][0] = across[k];

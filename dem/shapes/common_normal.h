@@ -37,11 +37,11 @@ struct PairNormal {
   /// For whom keeps account of how far bodies have turned (superellipsoid_store.h): they are apart
   /// while n.D is above this and that, m.
   double clear = std::numeric_limits<double>::infinity();
-  Powers powers_i, powers_j;
+  PairPowers powers;
 
   bool empty() const { return normal.isZero(0); }
   /// Seen from the second.
-  PairNormal reversed() const { return {-normal, touching, clear, powers_j, powers_i}; }
+  PairNormal reversed() const { return {-normal, touching, clear, {powers.j, powers.i}}; }
 };
 
 /// A superellipsoid and how it is turned: from the body frame to space.

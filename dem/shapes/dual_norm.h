@@ -24,6 +24,10 @@ struct Powers {
   };
   OfNorm level, whole;
 };
+/// Those of both bodies of a pair.
+struct PairPowers {
+  Powers i, j;
+};
 
 /// Powers of the lesser over the greater component, `ratio`.
 Powers::OfNorm powers_at(double ratio, double power);

@@ -1,7 +1,7 @@
 // Compiled for every width (lanes.h): no function of it may be another file's, too.
 #include "dem/shapes/pair_step.h"
 
-#include "dem/space/lanes.h"
+#include "dem/space/lane_rows.h"
 
 #define GRAINFIELD_INLINE [[gnu::always_inline]] inline
 
@@ -28,28 +28,40 @@ template <int W>
 struct Powered {
   Lanes<W> share, root;
 };
+/// As Powers::OfNorm, and where they are kept.
+template <int W>
+struct LanePowers {
+  Lanes<W> inverse_ratio, share, root;
+  PairPowers* const* pairs;
+  int number;  // in the order of PairPowers
+  GRAINFIELD_INLINE Powers::OfNorm& kept(int k) const {
+    PairPowers& p = *pairs[k];
+    Powers::OfNorm* const all[]{&p.i.level, &p.i.whole, &p.j.level, &p.j.whole};
+    return *all[number];
+  }
+};
 /// As share_and_root of superellipsoid.cc.
 template <int W>
 GRAINFIELD_INLINE Powered<W> powered(const Lanes<W>& ratio, const Lanes<W>& power,
-                                     const Lanes<W>& inverse, Powers::OfNorm* const* last) {
+                                     const Lanes<W>& inverse, LanePowers<W> last) {
   Powered<W> out{};
   const auto square = power == 2;
   const auto other = power != 2;
   if (any_of(other)) {
-    Lanes<W> change = ratio * lanes_of<W>([&](int k) { return last[k]->inverse_ratio; }) - 1;
+    Lanes<W> change = ratio * last.inverse_ratio - 1;
     const auto far = other & ~(magnitude(change) * power <= kNear);
     if (any_of(far)) {
       for (int k = 0; k < W; ++k) {
         if (far[k] != 0) {
-          *last[k] = powers_at(ratio[k], power[k]);
+          const Powers::OfNorm at = last.kept(k) = powers_at(ratio[k], power[k]);
+          last.share[k] = at.share;
+          last.root[k] = at.root;
           change[k] = 0;
         }
       }
     }
-    const Lanes<W> share = lanes_of<W>([&](int k) { return last[k]->share; });
-    const Lanes<W> root = lanes_of<W>([&](int k) { return last[k]->root; });
-    out.share = share * power_near_one(change, power);
-    out.root = root * power_near_one((out.share - share) / (1 + share), inverse);
+    out.share = last.share * power_near_one(change, power);
+    out.root = last.root * power_near_one((out.share - last.share) / (1 + last.share), inverse);
   }
   if (any_of(square)) {
     const Lanes<W> share = ratio * ratio, root = root_of<W>(1 + share);
@@ -66,7 +78,7 @@ struct LaneNorm {
 };
 template <int W>
 GRAINFIELD_INLINE LaneNorm<W> norm_of(const Lanes<W>& a, const Lanes<W>& b, const Lanes<W>& power,
-                                      const Lanes<W>& inverse, Powers::OfNorm* const* last) {
+                                      const Lanes<W>& inverse, LanePowers<W> last) {
   const auto turned = b > a;
   const Lanes<W> most = turned ? b : a, least = turned ? a : b, ratio = least / most;
   const auto [share, root] = powered<W>(ratio, power, inverse, last);
@@ -124,6 +136,23 @@ GRAINFIELD_INLINE LaneBend<W> half_inverse(const LaneBend<W>& bend) {
           bend.area};
 }
 
+/// As LaneBody.
+template <int W>
+struct LaneBodies {
+  Vectors<W> turn[3], axes;
+  Lanes<W> level, upright, farthest, equal_radius;
+};
+template <int W>
+GRAINFIELD_INLINE LaneBodies<W> bodies_of(const LaneBody* const (&bodies)[kBatch],
+                                          const int* slots) {
+  static_assert(sizeof(LaneBody) == 16 * sizeof(double));
+  const double* rows[W];
+  for (int k = 0; k < W; ++k) rows[k] = bodies[slots[k]]->turn[0];
+  const Four<W> a = four_of<W>(rows, 0), b = four_of<W>(rows, 4);
+  const Four<W> c = four_of<W>(rows, 8), d = four_of<W>(rows, 12);
+  return {{{a.a, a.b, a.c}, {a.d, b.a, b.b}, {b.c, b.d, c.a}}, {c.b, c.c, c.d}, d.a, d.b, d.c, d.d};
+}
+
 /// One body of each pair, where its outward normal is n (of the second: -n, with the same height).
 template <int W>
 struct Side {
@@ -131,36 +160,21 @@ struct Side {
   LaneBend<W> bend;
 };
 template <int W>
-GRAINFIELD_INLINE Side<W> side_of(const LaneBody* const* bodies, Powers* const* powers,
-                                  const Vectors<W>& n, const Vectors<W>& tx, const Vectors<W>& ty) {
+GRAINFIELD_INLINE Side<W> side_of(const LaneBodies<W>& body, const LanePowers<W>& level_powers,
+                                  const LanePowers<W>& whole_powers, const Vectors<W>& n,
+                                  const Vectors<W>& tx, const Vectors<W>& ty) {
   using V = Lanes<W>;
-  const auto of_bodies = [&](auto get) {
-    return lanes_of<W>([&](int k) { return get(*bodies[k]); });
+  const auto in_body = [&](const Vectors<W>& v) {
+    return Vectors<W>{dot<W>(body.turn[0], v), dot<W>(body.turn[1], v), dot<W>(body.turn[2], v)};
   };
-  Powers::OfNorm *level_powers[W], *whole_powers[W];
-  for (int k = 0; k < W; ++k) {
-    level_powers[k] = &powers[k]->level;
-    whole_powers[k] = &powers[k]->whole;
-  }
-  const auto column = [&](int axis) {
-    return Vectors<W>{of_bodies([axis](const LaneBody& b) { return b.turn[axis][0]; }),
-                      of_bodies([axis](const LaneBody& b) { return b.turn[axis][1]; }),
-                      of_bodies([axis](const LaneBody& b) { return b.turn[axis][2]; })};
-  };
-  const Vectors<W> c0 = column(0), c1 = column(1), c2 = column(2);
-  const Vectors<W> nb{dot<W>(c0, n), dot<W>(c1, n), dot<W>(c2, n)};
-  const Vectors<W> xb{dot<W>(c0, tx), dot<W>(c1, tx), dot<W>(c2, tx)};
-  const Vectors<W> yb{dot<W>(c0, ty), dot<W>(c1, ty), dot<W>(c2, ty)};
+  const Vectors<W> nb = in_body(n), xb = in_body(tx), yb = in_body(ty);
 
   // support_of.
-  const Vectors<W> axes{of_bodies([](const LaneBody& b) { return b.axes[0]; }),
-                        of_bodies([](const LaneBody& b) { return b.axes[1]; }),
-                        of_bodies([](const LaneBody& b) { return b.axes[2]; })};
+  const Vectors<W>& axes = body.axes;
   Vectors<W> s{magnitude(axes.x * nb.x), magnitude(axes.y * nb.y), magnitude(axes.z * nb.z)};
   const V least = kLeastShare * greater_of(greater_of(s.x, s.y), s.z);
   s = {greater_of(s.x, least), greater_of(s.y, least), greater_of(s.z, least)};
-  const V p = of_bodies([](const LaneBody& b) { return b.level; });
-  const V q = of_bodies([](const LaneBody& b) { return b.upright; });
+  const V &p = body.level, &q = body.upright;
   const LaneNorm<W> level = norm_of<W>(s.x, s.y, p, 1 / p, level_powers);
   const LaneNorm<W> whole = norm_of<W>(level.size, s.z, q, 1 / q, whole_powers);
   const Vectors<W> r{with_sign(axes.x, nb.x), with_sign(axes.y, nb.y), with_sign(axes.z, nb.z)};
@@ -186,6 +200,12 @@ GRAINFIELD_INLINE Side<W> side_of(const LaneBody* const* bodies, Powers* const* 
   return out;
 }
 
+/// Out of line: most lanes write a row.
+template <int W>
+[[gnu::noinline]] void scatter(const Lanes<W>& from, const int* slots, int count, double* to) {
+  for (int k = 0; k < count; ++k) to[slots[k]] = from[k];
+}
+
 /// A point along the tangents.
 template <int W>
 struct Pushed {
@@ -195,34 +215,39 @@ struct Pushed {
 // How a step ends: as Stepped, or (another) its normal is where to go on from.
 enum class End { settled, apart, neither, another };
 
-/// From the normals of the pairs in `slots`. Of the first `count` lanes the results are kept: the
-/// others repeat one of them.
+/// From the normals of the pairs in `slots`, which ascend. Of the first `count` lanes the results
+/// are kept, of use where they have settled: the others repeat one of them.
 template <int W>
 GRAINFIELD_INLINE void step(PairBatch& batch, const int* slots, int count, bool curvatures,
                             End* ends) {
   using V = Lanes<W>;
   OverlapBatch& o = *batch.overlaps;
+  const bool in_row = count == W && slots[W - 1] == slots[0] + W - 1;
   const auto of_slots = [&](const double* values) {
+    if (in_row) return loaded<W>(values + slots[0]);
     return lanes_of<W>([&](int k) { return values[slots[k]]; });
   };
   const auto vectors = [&](const double(*values)[kBatch]) {
     return Vectors<W>{of_slots(values[0]), of_slots(values[1]), of_slots(values[2])};
   };
-  const LaneBody *first[W], *second[W];
-  Powers *powers_i[W], *powers_j[W];
+  const LaneBodies<W> first = bodies_of<W>(batch.i, slots), second = bodies_of<W>(batch.j, slots);
+  PairPowers* kept[W];
+  const double* rows[W];
   for (int k = 0; k < W; ++k) {
-    first[k] = batch.i[slots[k]];
-    second[k] = batch.j[slots[k]];
-    powers_i[k] = batch.powers_i[slots[k]];
-    powers_j[k] = batch.powers_j[slots[k]];
+    kept[k] = batch.powers[slots[k]];
+    rows[k] = &kept[k]->i.level.inverse_ratio;
   }
+  static_assert(sizeof(PairPowers) == 12 * sizeof(double));
+  const Four<W> p = four_of<W>(rows, 0), q = four_of<W>(rows, 4), r = four_of<W>(rows, 8);
+  const LanePowers<W> level_i{p.a, p.b, p.c, kept, 0}, whole_i{p.d, q.a, q.b, kept, 1};
+  const LanePowers<W> level_j{q.c, q.d, r.a, kept, 2}, whole_j{r.b, r.c, r.d, kept, 3};
   const Vectors<W> n = vectors(o.normal), across = vectors(batch.across);
   // tangents_of.
   const V unit = with_sign(V{} + 1, n.z), a = -1 / (unit + n.z), b = n.x * n.y * a;
   const Vectors<W> tx{1 + unit * n.x * n.x * a, unit * b, -unit * n.x};
   const Vectors<W> ty{b, unit + n.y * n.y * a, -n.y};
-  const Side<W> i = side_of<W>(first, powers_i, n, tx, ty);
-  const Side<W> j = side_of<W>(second, powers_j, n, tx, ty);
+  const Side<W> i = side_of<W>(first, level_i, whole_i, n, tx, ty);
+  const Side<W> j = side_of<W>(second, level_j, whole_j, n, tx, ty);
 
   // f, its gradient and Hessian, and the step.
   const V f = i.height + j.height - dot<W>(n, across);
@@ -232,8 +257,7 @@ GRAINFIELD_INLINE void step(PairBatch& batch, const int* slots, int count, bool 
   const V step_x = (f * gx - (h.yy * gx - h.xy * gy)) / divisor;
   const V step_y = (f * gy - (h.xx * gy - h.xy * gx)) / divisor;
   const V fall = -(gx * step_x + gy * step_y);
-  const V reach =
-      kPointsLeft * lanes_of<W>([&](int k) { return first[k]->farthest + second[k]->farthest; });
+  const V reach = kPointsLeft * (first.farthest + second.farthest);
   const auto least_ahead = (f > 0) & (divisor > 0) & (trace > 2 * f) &
                            (step_x * step_x + step_y * step_y <= kShortStep * kShortStep);
   const auto settled =
@@ -244,16 +268,24 @@ GRAINFIELD_INLINE void step(PairBatch& batch, const int* slots, int count, bool 
                     n.z + step_x * tx.z + step_y * ty.z};
   const V scale = 1 / root_of<W>(dot<W>(normal, normal));
   normal = {normal.x * scale, normal.y * scale, normal.z * scale};
+  const auto put = [&](const V& from, double* to) {
+    if (in_row) return store<W>(from, to + slots[0]);
+    scatter<W>(from, slots, count, to);
+  };
+  const auto put_vector = [&](const Vectors<W>& from, double(*to)[kBatch]) {
+    put(from.x, to[0]);
+    put(from.y, to[1]);
+    put(from.z, to[2]);
+  };
+  const auto goes_on = settled | another;
+  put(f, batch.height);
+  put_vector({goes_on ? normal.x : n.x, goes_on ? normal.y : n.y, goes_on ? normal.z : n.z},
+             o.normal);
   for (int k = 0; k < count; ++k) {
-    const int at = slots[k];
-    End& end = ends[k];
-    batch.height[at] = f[k];
-    end = f[k] <= 0 ? End::apart : another[k] != 0 ? End::another : End::neither;
-    if (settled[k] != 0) end = End::settled;
-    if (end == End::neither || end == End::apart) continue;
-    o.normal[0][at] = normal.x[k];
-    o.normal[1][at] = normal.y[k];
-    o.normal[2][at] = normal.z[k];
+    ends[k] = settled[k] != 0   ? End::settled
+              : another[k] != 0 ? End::another
+              : f[k] <= 0       ? End::apart
+                                : End::neither;
   }
   if (!any_of(settled)) return;
 
@@ -287,30 +319,20 @@ GRAINFIELD_INLINE void step(PairBatch& batch, const int* slots, int count, bool 
     const V two = square_size > 0 ? c.xy * inverse_size : V{};
     along_x = apart >= 0 ? one : two;
     along_y = apart >= 0 ? two : one;
-    const V r_i = lanes_of<W>([&](int k) { return first[k]->equal_radius; });
-    const V r_j = lanes_of<W>([&](int k) { return second[k]->equal_radius; });
+    const V &r_i = first.equal_radius, &r_j = second.equal_radius;
     radius = r_i * r_j / (r_i + r_j);
   }
   // Across the direction of the greater one.
   const Vectors<W> major{along_x * ty.x - along_y * tx.x, along_x * ty.y - along_y * tx.y,
                          along_x * ty.z - along_y * tx.z};
-  for (int k = 0; k < count; ++k) {
-    if (ends[k] != End::settled) continue;
-    const int at = slots[k];
-    o.depth[at] = depth[k];
-    const auto put = [&](const Vectors<W>& from, double(*to)[kBatch]) {
-      to[0][at] = from.x[k];
-      to[1][at] = from.y[k];
-      to[2][at] = from.z[k];
-    };
-    put(middle, o.arm_i);
-    put(back, o.arm_j);
-    if (!curvatures) continue;
-    o.radius[at] = radius[k];
-    o.greater_curvature[at] = greater[k];
-    o.lesser_curvature[at] = lesser[k];
-    put(major, o.major);
-  }
+  put(depth, o.depth);
+  put_vector(middle, o.arm_i);
+  put_vector(back, o.arm_j);
+  if (!curvatures) return;
+  put(radius, o.radius);
+  put(greater, o.greater_curvature);
+  put(lesser, o.lesser_curvature);
+  put_vector(major, o.major);
 }
 
 }  // namespace

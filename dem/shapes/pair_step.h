@@ -32,8 +32,8 @@ struct PairBatch {
   int count = 0;
   int slots[kBatch];
   const LaneBody *i[kBatch], *j[kBatch];
-  double across[3][kBatch];                     ///< D, m
-  Powers *powers_i[kBatch], *powers_j[kBatch];  ///< carried on
+  double across[3][kBatch];    ///< D, m
+  PairPowers* powers[kBatch];  ///< carried on
   /// In: the remembered normals. Out, settled: all of the overlap (with curvatures); apart: the
   /// normal that proves it.
   OverlapBatch* overlaps = nullptr;

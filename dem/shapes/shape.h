@@ -19,8 +19,9 @@ namespace grainfield::dem {
 /// A shape that keeps places of its own beside the bodies' also has overlap_image
 /// (polygon_store.h): a body that is an image of j tells nothing of them.
 ///
-/// A shape with overlaps of several pairs side by side also has a Batch, put, finish and overlap_of
-/// (superellipsoid_store.h, engine/batch.h; what is needed: space/lane_width.h).
+/// A shape with overlaps of several pairs side by side also has a Batch, put, finish, overlap_of,
+/// ways, start_ways and apart_until (superellipsoid_store.h, engine/batch.h; what is needed:
+/// space/lane_width.h).
 ///
 /// `outlines`: has corners and may be slender. `central`: its contact points lie on the line of
 /// centres. `keeps_places`: it keeps places of its own, or how grains are turned.

@@ -29,6 +29,8 @@ class SuperellipsoidStore {
   }
   using Overlap = Overlap3;
   using Feature = PairNormal;
+  // What rounding does to the sums of ways of a million steps is below this share of both sizes.
+  static constexpr double kRoundedWay = 1e-9;
 
   /// Bounding radius of what is given, m. Throws std::invalid_argument as `superellipsoid` does.
   static double reach(const ShapeInput& shape) { return farthest_of(shape_of(shape)); }
@@ -45,15 +47,20 @@ class SuperellipsoidStore {
     grain.equal_radius = cube_root(solid.volume / (4.0 / 3 * std::numbers::pi));
     grains_.push_back(grain);
     lanes_.push_back(lane_body(turned(grain), grain.equal_radius));
+    ways_.push_back(0);
+    places_.push_back(Eigen::Vector3d::Zero());
     return solid;
   }
-  void place(int i, const Body<3>&, const RotationOf<3>& rotation) {
+  void place(int i, const Body<3>& b, const RotationOf<3>& rotation) {
     Grain& grain = grains_[i];
     const double chord =
         std::sqrt(std::min((rotation.coeffs() - grain.rotation.coeffs()).squaredNorm(),
                            (rotation.coeffs() + grain.rotation.coeffs()).squaredNorm()));
     // The angle is 4 asin(chord/2), and asin x <= x + (pi/2 - 1) x^3.
-    grain.swept += grain.lever * 2 * chord * (1 + 0.15 * chord * chord);
+    const double swept = grain.lever * 2 * chord * (1 + 0.15 * chord * chord);
+    grain.swept += swept;
+    ways_[i] += swept + (b.position - places_[i]).norm();
+    places_[i] = b.position;
     grain.rotation = rotation;
     grain.turn = rotation.toRotationMatrix();
     for (int k = 0; k < 3; ++k) {
@@ -69,6 +76,27 @@ class SuperellipsoidStore {
     for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = grains_[order[k]];
     std::copy(sorted.begin(), sorted.end(), grains_.begin());
     fill_lanes();
+  }
+  /// By how much any distance between tangent planes across a fixed direction may have changed for
+  /// each grain since start_ways(), m: the lengths of the ways of its centre and of its turning.
+  const double* ways() const { return ways_.data(); }
+  void start_ways(const Body<3>* bodies) {
+    for (std::size_t i = 0; i < ways_.size(); ++i) {
+      ways_[i] = 0;
+      places_[i] = bodies[i].position;
+    }
+  }
+  /// For a pair that `put` has just found apart: up to which sum of both ways it is apart for
+  /// certain, and `put` would change nothing of what it remembers. With what rounding may do.
+  double apart_until(int i, const Body<3>& a, int j, const Eigen::Vector3d& position,
+                     const Feature& feature) const {
+    const Grain &first = grains_[i], &second = grains_[j];
+    const Eigen::Vector3d across = position - a.position;
+    const double reach = first.farthest + second.farthest;
+    const double gap = std::isfinite(feature.clear)
+                           ? across.dot(feature.normal) - feature.clear - first.swept - second.swept
+                           : across.norm() - reach;
+    return ways_[i] + ways_[j] + gap - kRoundedWay * reach;
   }
   Outline outline(int) const { return {}; }
   const Superellipsoid& superellipsoid(int i) const { return grains_[i].shape; }
@@ -111,27 +139,17 @@ class SuperellipsoidStore {
   template <Measures measures>
   bool put(Batch& batch, int i, const Body<3>& a, int j, const Eigen::Vector3d& position,
            Feature& feature) const {
-    const Grain &first = grains_[i], &second = grains_[j];
     const int slot = batch.count;
     const Eigen::Vector3d across = position - a.position;
-    if (across.dot(feature.normal) > feature.clear + (first.swept + second.swept)) return false;
-    const double reach = first.farthest + second.farthest;
+    const double reach = lanes_[i].farthest + lanes_[j].farthest;
     if (feature.touching == 0 || !(across.squaredNorm() < reach * reach)) {
-      Overlap o;
-      Body<3> b;
-      b.position = position;
-      if (!overlap<measures>(i, a, j, b, feature, o)) return false;
-      put_overlap(o, batch, slot);
-      batch.touches[slot] = true;
-      ++batch.count;
-      return true;
+      return put_alone<measures>(batch, i, a, j, position, feature);
     }
     PairBatch& p = batch.pairs;
     p.slots[p.count++] = slot;
     p.i[slot] = &lanes_[i];
     p.j[slot] = &lanes_[j];
-    p.powers_i[slot] = &feature.powers_i;
-    p.powers_j[slot] = &feature.powers_j;
+    p.powers[slot] = &feature.powers;
     for (int k = 0; k < 3; ++k) {
       p.across[k][slot] = across[k];
       batch.overlaps.normal[k][slot] = feature.normal[k];
@@ -217,6 +235,8 @@ class SuperellipsoidStore {
     r.require(grains_.size() == grains);
     lanes_.resize(grains);
     fill_lanes();
+    ways_.resize(grains);
+    places_.resize(grains);
   }
 
  private:
@@ -237,6 +257,18 @@ class SuperellipsoidStore {
     return {grain.shape, grain.turn, grain.farthest, grain.nearest};
   }
 
+  template <Measures measures>
+  [[gnu::noinline]] bool put_alone(Batch& batch, int i, const Body<3>& a, int j,
+                                   const Eigen::Vector3d& position, Feature& feature) const {
+    Overlap o;
+    Body<3> b;
+    b.position = position;
+    if (!overlap<measures>(i, a, j, b, feature, o)) return false;
+    put_overlap(o, batch, batch.count);
+    batch.touches[batch.count] = true;
+    ++batch.count;
+    return true;
+  }
   /// What a search for a pair's normal has found, as it is remembered and told.
   template <Measures measures>
   static bool take(bool touches, const Grain& first, const Grain& second,
@@ -284,6 +316,8 @@ class SuperellipsoidStore {
 
   std::vector<Grain> grains_;
   std::vector<LaneBody> lanes_;  // the same, for kernels
+  std::vector<double> ways_;
+  std::vector<Eigen::Vector3d> places_;  // of the last step
 };
 
 }  // namespace grainfield::dem

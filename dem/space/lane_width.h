@@ -3,7 +3,7 @@
 //
 // What a new shape or law needs for lanes: its kernel in a file of its own, a template over the
 // width W that reads and writes plain arrays, instantiated for GRAINFIELD_LANES alone and named in
-// dem/CMakeLists.txt (pair_step.cc for shapes, elliptic_lanes.cc for laws); for a shape, a Batch
+// dem/CMakeLists.txt (pair_step.cc for shapes, contact_lanes.cc for laws); for a shape, a Batch
 // with put and finish (shape.h); for a law, lanes() (law.h); or what whole rows of pairs need
 // (engine/row_forces.h). Without them pairs go one by one.
 #pragma once

@@ -45,8 +45,8 @@ class Run:
         given = dict(s.split("=", 1) for s in settings)
         self.friction = float(given.get("material.friction", 0.5))
         self.grains = int(given.get("response.grains", 1))
-        self.shape = "spheres" if given.get("packing.dim") == "3" else {"irregular": "pentagons"}.get(
-            given.get("packing.shape"), "disks")
+        shapes = {"irregular": "pentagons"}
+        self.shape = "spheres" if "spheres" in given.get("sweep.values", "") else shapes.get(given.get("packing.shape"), "disks")
         self.width = next((float(value) for key, value in given.items() if key.endswith("packing.width")), None)
         file = folder / f"{name}.profiles.csv"
         self.profiles = file.read_text() if file.exists() else ""
@@ -63,10 +63,6 @@ class Run:
     def depth(self):
         return self.number("layer.depth_diameters")
 
-    @property
-    def force(self):
-        return self.number("load.force")
-
     def misfit(self, model, region, kernel="w_depths"):
         return Misfit(self, f"limit.{model}.{region}.{kernel}")
 
@@ -76,7 +72,7 @@ class Run:
         for row in csv.DictReader(line for line in self.profiles.splitlines() if not line.startswith("#")):
             width = float(re.search(r"w = (\S+) m", row["profile"])[1]) / self.number("layer.depth")
             if abs(float(row["x_m"])) < 1e-9 and (abs(width - 0.1) < 1e-3) == (kernel == "w_depths"):
-                values = [float(row[next(key for key in row if re.fullmatch(rf"{part}_N/m2?", key))])
+                values = [float(row[next(key for key in row if re.fullmatch(rf"{part}_N/m2?", key))] or "nan")
                           for part in ("simulation", "standard_error", model)]
                 out[round(float(row["depth_m"]) / self.number("layer.depth"), 3)] = values
         first = f"compare.{model}.peak"  # of the first profile, which is at AT and at fixed width over d
@@ -109,11 +105,11 @@ class Misfit:
     def __init__(self, run, key):
         self.squared, error, noise = (run.number(f"{key}.{name}") for name in ("squared", "squared.standard_error", "noise"))
         self.bound = 100 * run.number(f"{key}.right_to")
-        least = run.layers - 1
+        freedom = run.layers - 1
         self.known = math.isfinite(self.squared) and math.isfinite(self.bound)
         #: of the square: the jackknife's, and that of one mode of noise, as the bound has it
         scatter = math.hypot(error, math.sqrt(2) * noise)
-        self.resolved = self.known and self.squared > stats.t.ppf(0.95, least) * scatter
+        self.resolved = self.known and self.squared > stats.t.ppf(0.95, freedom) * scatter
         self.value = 100 * math.sqrt(max(self.squared, 0)) if self.known else math.nan
         self.error = 100 * error / 2 / math.sqrt(self.squared) if self.resolved else math.nan
         self.low = 100 * math.sqrt(max(self.squared - error, 0)) if self.known else math.nan
@@ -212,8 +208,7 @@ def shifted(value):
 
 def causes(runs):
     head = ["depth / d", "excess over one stiffness, w = 0.1 h", "over stiffness by depth", "w = 1.5 d",
-            "load on 3 disks, w = 0.1 h", "on 10 disks", "shift / d at 0.25 h", "at 0.5 h", "at 0.75 h",
-            "depth / d of the loaded centres"]
+            "load on 3 disks, w = 0.1 h", "on 10 disks", "shift / d at 0.25 h", "at 0.5 h", "at 0.75 h"]
     rows = []
     for run in usual(runs):
         if run.friction != 0.5 or run.shape != "disks":
@@ -226,8 +221,7 @@ def causes(runs):
             more = next((other for other in runs if other.name == name), None)
             cells.append(percent(*more.excess(HOMOGENEOUS, "w_depths")) if more else "–")
         cells += [shifted(run.shift(BY_DEPTH, "w_depths", at)) for at in (0.25, 0.5, 0.75)]
-        below = run.number("response.load_depth") / run.number("layer.mean_diameter")
-        rows.append(cells + [f"{below:.2f}" if math.isfinite(below) else "–"])
+        rows.append(cells)
     return table(head, rows)
 
 

@@ -28,15 +28,18 @@ TEST_P(SuperellipsoidLanes, ScenesEndAsPairByPair) {
 // An energy balance asks for the law contact by contact, a step alone begins grain by grain; what
 // shares a batch changes with the threads.
 TEST_P(SuperellipsoidLanes, LawAndTurningAreThoseOneByOne) {
-  for (const bool cell : {false, true}) {
-    const auto run = [cell](bool alone, int threads) {
-      const auto engine = lanes_scene({cell, HertzEllipticLaw{1e5, 0.3, 0.3}, threads, alone});
-      for (int k = 0; k < (alone ? 200 : 1); ++k) engine->step(alone ? 1 : 200);
-      EXPECT_GT(engine->measure().contacts, 60);
-      return bits::hash_of(engine->snapshot());
-    };
-    const std::uint64_t alone = run(true, 1);
-    for (const int threads : {1, 2, 3}) EXPECT_EQ(run(false, threads), alone) << cell << threads;
+  for (const AnyLaw& law :
+       {AnyLaw(HertzEllipticLaw{1e5, 0.3, 0.3}), AnyLaw(PenaltyLaw{1e4, 5e3, 0.3})}) {
+    for (const bool cell : {false, true}) {
+      const auto run = [&](bool alone, int threads) {
+        const auto engine = lanes_scene({cell, law, threads, alone});
+        for (int k = 0; k < (alone ? 200 : 1); ++k) engine->step(alone ? 1 : 200);
+        EXPECT_GT(engine->measure().contacts, 60);
+        return bits::hash_of(engine->snapshot());
+      };
+      const std::uint64_t alone = run(true, 1);
+      for (const int threads : {1, 2, 3}) EXPECT_EQ(run(false, threads), alone) << cell << threads;
+    }
   }
 }
 

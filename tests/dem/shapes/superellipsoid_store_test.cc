@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cstring>
+
 #include "tests/dem/superellipsoid_scene.h"
 
 namespace grainfield::dem {
@@ -81,6 +83,40 @@ TEST(SuperellipsoidStore, NoContactIsMissedWhileAPairWaits) {
   EXPECT_GT(waited, 10 * looked);
 }
 
+// A pair left out by the ways of both does not touch, and would remember what it does.
+TEST(SuperellipsoidStore, APairLeftOutWouldNotTouchNorChange) {
+  int left_out = 0, looked = 0;
+  for (const double dt : {2e-3, 0.02}) {
+    for (const auto& [least, most] : {std::pair(0.7, 1.3), {0.1, 1.9}}) {
+      Random random(13);
+      for (int k = 0; k < 100; ++k) {
+        Passing pair(random, least, most);
+        PairNormal memory;
+        double until = 0;
+        for (double t = 0; t < 4; t += dt) {
+          pair.move(dt);
+          PairNormal now = memory;
+          Overlap3 o;
+          const bool touches = pair.store.overlap<Measures::curvatures>(0, pair.bodies[0], 1,
+                                                                        pair.bodies[1], now, o);
+          if (pair.store.ways()[0] + pair.store.ways()[1] < until) {
+            ++left_out;
+            ASSERT_FALSE(touches);
+            EXPECT_EQ(std::memcmp(&now, &memory, sizeof now), 0);
+            continue;
+          }
+          looked += touches ? 0 : 1;
+          memory = now;
+          until = touches ? 0
+                          : pair.store.apart_until(0, pair.bodies[0], 1, pair.bodies[1].position,
+                                                   memory);
+        }
+      }
+    }
+  }
+  EXPECT_GT(left_out, 3 * looked);
+}
+
 // Powers that follow by their series from step to step, against those taken anew, at the normal
 // that the former has found.
 TEST(SuperellipsoidStore, PowersThatFollowAreThoseTakenAnew) {
@@ -94,7 +130,7 @@ TEST(SuperellipsoidStore, PowersThatFollowAreThoseTakenAnew) {
       for (double t = 0; t < 4; t += 2e-3) {
         pair.move(2e-3);
         PairNormal anew = memory;
-        anew.powers_i = anew.powers_j = {};
+        anew.powers = {};
         Overlap3 o, fresh;
         const bool touches = pair.store.overlap<Measures::curvatures>(0, pair.bodies[0], 1,
                                                                       pair.bodies[1], memory, o);
