@@ -99,6 +99,10 @@ class Run:
         return z * (1 - (1 + value) ** (-1 / slope)), z / slope * error / (1 + value)
 
 
+#: Misfits whose bound is above, %, are not drawn: the layers scatter too much to tell anything.
+UNBOUNDED = 30
+
+
 class Misfit:
     """The misfit beyond noise of limit.*, %."""
 
@@ -285,7 +289,7 @@ def draw(runs, picture):
                 for run in usual(runs):
                     if run.friction == friction and run.shape == "disks":
                         m = run.misfit(model, region, kernel)
-                        if m.known:
+                        if m.known and m.bound < UNBOUNDED:
                             rows.append((run.depth * shift, m.value, m.low, max(m.high, m.value)))
                             most = max(most, m.high if m.resolved else 0)
                 if not rows:
