@@ -11,8 +11,8 @@
 #include <bit>
 #include <cstdint>
 
-#include "dem/laws/elliptic.h"
 #include "dem/laws/contact_lanes.h"
+#include "dem/laws/elliptic.h"
 #include "dem/space/rotation.h"
 
 namespace grainfield::dem {
