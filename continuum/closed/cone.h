@@ -60,7 +60,7 @@ class LevyCone {
 
   /// s_rr, s_zz, s_rz over rho g z at S, 0 <= S <= 1; s_tt is the mean of the first two.
   std::array<double, 3> reduced(double S) const;
-  /// As OslCone::stress().
+  /// The stress at a point, as OslCone::stress() gives it.
   std::array<double, 6> stress(double x, double y, double z) const;
 
   double singular() const { return singular_; }  ///< S0

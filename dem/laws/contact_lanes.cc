@@ -11,7 +11,7 @@ constexpr double kPi = 3.141592653589793238462643383279502884;
 // Beyond it turned_by (kinematics3.h) takes sine and cosine.
 constexpr double kMostTurnSquared = 1e-2;
 
-/// As capped (contact.h).
+/// Springs capped as by capped (contact.h).
 template <int W>
 [[gnu::always_inline]] inline Three<W> capped(const Three<W>& v, const Lanes<W>& limit) {
   const Lanes<W> square = dot<W>(v, v);
@@ -20,7 +20,7 @@ template <int W>
   return chosen<W>(slides, scaled<W>(limit / root_of<W>(square), v), v);
 }
 
-/// As turned_by and turn_with_material.
+/// Springs turned as by turned_by and turn_with_material.
 template <int W>
 [[gnu::always_inline]] inline Three<W> turned(const Three<W>& spring, const Three<W>& normal,
                                               const Three<W>& turn, const Lanes<W>& square) {
@@ -36,12 +36,12 @@ template <int W>
   return chosen<W>(size > 0, out, spring);
 }
 
-/// As EllipticContact.
+/// Numbers of EllipticContact.
 template <int W>
 struct LaneEllipse {
   Lanes<W> gamma, axis, k, b, d;
 };
-/// As EllipseTable::contact, of ratios that the table has.
+/// Contacts as of EllipseTable::contact, for ratios that the table has.
 template <int W>
 [[gnu::always_inline]] inline LaneEllipse<W> ellipse_of(const double* table, const Lanes<W>& lesser,
                                                         const Lanes<W>& greater) {

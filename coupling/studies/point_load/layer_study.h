@@ -1,4 +1,4 @@
-// What the studies of loaded layers share.
+// Parts that the studies of loaded layers share.
 #pragma once
 #include "coupling/case/study.h"
 

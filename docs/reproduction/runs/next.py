@@ -233,7 +233,8 @@ def keep(run, tag, commit, folder, states):
                         str(compact)], check=True)
         kept = lzma.compress(compact.read_bytes(), preset=9 | lzma.PRESET_EXTREME)
         contents[states / f"{name}.h5.xz"] = kept
-    figures = json.loads(found[0].with_name("summary.json").read_text())
+    # Verdicts may name files of the run: without the folder of this machine.
+    figures = json.loads(found[0].with_name("summary.json").read_text().replace(f"{folder / 'results'}/", ""))
     record = {"case": case, "seed": seed, "settings": settings, "tag": tag, "commit": commit,
               "cpu_seconds": float((folder / "cpu_seconds").read_text()),
               "sha256": hashlib.sha256(kept).hexdigest(), "summary": figures}
