@@ -301,7 +301,7 @@ def _held(row: Row, results: Results) -> str | None:
     if None in (n, h, until, since, time):
         return None
     when = "never" if math.isnan(until) else f"within 1 % from {since:.0f} to {until:.0f}"
-    return (f"{'within' if max(n, h) <= 0.01 else 'beyond'} 1 %: N {100 * n:.2g} %, H {100 * h:.2g} % "
+    return (f"{'within' if max(n, h) <= 0.01 else 'beyond'} 1 %: N {100 * n:.3g} %, H {100 * h:.3g} % "
             f"after {time:.0f} sqrt(d/g); {when}")
 
 
