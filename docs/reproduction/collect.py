@@ -61,9 +61,9 @@ KEPT = "slip_through."
 #: The keys that this script adds to those of a summary.
 ADDED = ("q_over_p_at_0.02", "q_over_p_at_0.04", "pressure_at_0.04", "quasistatic_from",
          *(f"shear_stiffness.{part}" for part in PARTS),
-         *(f"strain_slope.{part}" for part in ("early", "middle", "late")), "strain_ratio_at_0.04", "rve_stiffening_late",
-         *(f"error_bar_at_0.04.r{radius}" for radius in BARS), "other_shear_stress", "sliding_share", "lid_height",
-         "slip_through.largest_miss")
+         *(f"strain_slope.{part}" for part in ("early", "middle", "late")), "strain_ratio_at_0.04",
+         "rve_stiffening_late", *(f"error_bar_at_0.04.r{radius}" for radius in BARS), "other_shear_stress",
+         "sliding_share", "lid_height", "slip_through.largest_miss")
 TOLERANCE = 1e-3  # of the strain at which a state is recorded
 
 
@@ -127,7 +127,8 @@ def bars_of(rves):
 
 
 def stiffening(rves):
-    """The slope of the axial stress over the RVEs' axial strain in the last quarter of the loading over that in the second."""
+    """The slope of the axial stress over the RVEs' axial strain in the last quarter of the loading, over that in the
+    second one."""
     of = rves["radius"] == RVE
     end = int(numpy.argmax(abs(rves["imposed_zz"][of]))) + 1
     strain, stress = (abs(rves[f"{name}_zz"][of][:end]) for name in ("strain", "sigma"))
@@ -217,7 +218,7 @@ def collect(runs):
 
 
 def pairs_of(rows):
-    """((key, name), (key, name), key and name of the pair up to its word) of the rows that compare, with every change."""
+    """((key, name), (key, name), key of the pair, its name) of the rows that compare, with every change."""
     out = set()
     for row in rows:
         if row["study"] not in CAUSES or "from" not in row:
@@ -242,10 +243,12 @@ def paired(figures, pairs):
             continue
         for word, values in (("less", [b - a for a, b in both]), ("over", [b / a for a, b in both])):
             out[f"{key.format(word)}{dot}"] = float(numpy.mean(values))
-            out[f"{key.format(word)}.standard_error{dot}" if dot else
-                f"{key.partition('.' + to_name)[0]}.standard_error.{to_name}_{word}_{from_name}"] = standard_error(values)
-            if not dot:
-                out[f"ensemble.realizations.{to_name}_{word}_{from_name}"] = len(both)
+            if dot:
+                out[f"{key.format(word)}.standard_error{dot}"] = standard_error(values)
+            else:
+                pair = f"{to_name}_{word}_{from_name}"
+                out[f"{key.partition('.' + to_name)[0]}.standard_error.{pair}"] = standard_error(values)
+                out[f"ensemble.realizations.{pair}"] = len(both)
     return out
 
 

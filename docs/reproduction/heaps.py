@@ -83,8 +83,10 @@ def flank(x, y, height):
 
 
 class Heap:
-    """A heap at rest on a plane floor or on fixed grains, by the group of its state in a snapshots.h5 (or a dictionary of
-    arrays)."""
+    """A heap at rest on a plane floor or on fixed grains, by the group of its state in a snapshots.h5.
+
+    A dictionary of arrays serves as well.
+    """
 
     def __init__(self, state):
         self.gravity = abs(float(state.attrs["gravity_y"])) if hasattr(state, "attrs") else GRAVITY
@@ -129,7 +131,8 @@ class Heap:
         self.left, self.right = flank(x[:apex][::-1], y[:apex][::-1], self.height), flank(x[apex + 1:], y[apex + 1:],
                                                                                          self.height)
         self.apex = (self.left[1] - self.right[1]) / (self.right[0] - self.left[0])
-        self.half_left, self.half_right = self.apex + self.left[1] / self.left[0], -self.right[1] / self.right[0] - self.apex
+        self.half_left = self.apex + self.left[1] / self.left[0]
+        self.half_right = -self.right[1] / self.right[0] - self.apex
         self.fraction = self._fraction()
         self.pressure = self.masses.sum() / self.areas.sum() * self.fraction * self.gravity * self.height
         self.scaled = (self.places - (self.apex, self.floor + self.height)) / self.height
@@ -229,7 +232,6 @@ class Heap:
             for name in ("branch", "normal"):
                 out[name][k] = (weights[inside, None, None] * self.tensors[name][inside]).sum(axis=0) / area
         return out
-
 
     def inside(self, height, room=RVE):
         """The points of a row at this height that have room to the flanks."""

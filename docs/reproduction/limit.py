@@ -15,15 +15,17 @@ import json
 import math
 import pathlib
 import re
-import subprocess
 import sys
 
 from scipy import stats
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE / "runs"))
+sys.path[:0] = [str(HERE), str(HERE / "runs"), str(HERE.parent / "images")]
 
+from gnuplot import block, draw  # noqa: E402
 from next import fail, read_list  # noqa: E402
+from record import write_file  # noqa: E402
+from tables import line, put, table  # noqa: E402
 
 PAGE = HERE.parent / "cases" / "boussinesq-limit.md"
 LISTS = ("boussinesq", "boussinesq-space")
@@ -45,8 +47,9 @@ class Run:
         given = dict(s.split("=", 1) for s in settings)
         self.friction = float(given.get("material.friction", 0.5))
         self.grains = int(given.get("response.grains", 1))
-        shapes = {"irregular": "pentagons"}
-        self.shape = "spheres" if "spheres" in given.get("sweep.values", "") else shapes.get(given.get("packing.shape"), "disks")
+        self.shape = {"irregular": "pentagons"}.get(given.get("packing.shape"), "disks")
+        if "spheres" in given.get("sweep.values", ""):
+            self.shape = "spheres"
         self.width = next((float(value) for key, value in given.items() if key.endswith("packing.width")), None)
         file = folder / f"{name}.profiles.csv"
         self.profiles = file.read_text() if file.exists() else ""
@@ -107,7 +110,8 @@ class Misfit:
     """The misfit beyond noise of limit.*, %."""
 
     def __init__(self, run, key):
-        self.squared, error, noise = (run.number(f"{key}.{name}") for name in ("squared", "squared.standard_error", "noise"))
+        self.squared, error, noise = (run.number(f"{key}.{name}")
+                                      for name in ("squared", "squared.standard_error", "noise"))
         self.bound = 100 * run.number(f"{key}.right_to")
         freedom = run.layers - 1
         self.known = math.isfinite(self.squared) and math.isfinite(self.bound)
@@ -164,12 +168,6 @@ def usual(runs):
     return [run for run in runs if run.grains == 1 and run.width is None and f"{run.name}-more" not in names]
 
 
-def table(head, rows):
-    """Of Markdown; nothing without rows."""
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
-
-
 def of(run):
     """What layer it is, as the first cells of every table."""
     wide = f"{run.number('dem.layer_width') / run.number('layer.depth'):.0f} depths wide" if run.width else ""
@@ -185,7 +183,7 @@ def misfits(runs):
     for run in usual(runs) + [run for run in runs if run.width is not None]:
         pairs = [run.misfit(model, region).cell() for region in REGIONS for model in (HOMOGENEOUS, BY_DEPTH)]
         rows.append(of(run) + [f"{run.layers}"] + pairs + [run.misfit(BY_DEPTH, "all").right()])
-    return table(head + ["right to"], rows)
+    return table(line(head + ["right to"]), rows)
 
 
 def bases(runs):
@@ -196,7 +194,7 @@ def bases(runs):
         at, error = run.number("verdict.position"), run.number("verdict.position_error")
         place = f"{at:.2f} ± {error:.2f}" if 0 <= at <= 1 else "beyond"
         rows.append(of(run) + [run.misfit(model, "base").cell() for model in models] + [words(run), place])
-    return table(head, rows)
+    return table(line(head), rows)
 
 
 def words(run):
@@ -226,7 +224,7 @@ def causes(runs):
             cells.append(percent(*more.excess(HOMOGENEOUS, "w_depths")) if more else "–")
         cells += [shifted(run.shift(BY_DEPTH, "w_depths", at)) for at in (0.25, 0.5, 0.75)]
         rows.append(cells)
-    return table(head, rows)
+    return table(line(head), rows)
 
 
 def linearity(runs):
@@ -240,7 +238,7 @@ def linearity(runs):
         peaks = ", ".join(f"{run.number(f'response.{place}_w_depths.peaks'):.0f}" for place in places)
         rows.append(of(run) + [f"{run.number('linearity.weights'):.0f}", *shares, peaks,
                                f"{run.number('moduli.growth'):.2f}"])
-    return table(head, rows)
+    return table(line(head), rows)
 
 
 def costs(runs):
@@ -251,29 +249,13 @@ def costs(runs):
         dem, fe, all_analysis = (run.number(f"time.{name}") for name in ("dem_cpu_s", "continuum_s", "analysis_s"))
         rows.append(of(run) + [f"{run.number('dem.grains'):.0f}", f"{run.layers}", shown(run.cpu / 60), shown(dem / 60),
                                shown((all_analysis - fe) / 60), shown(fe / 60), f"{run.number('memory.peak_MB'):.0f}"])
-    return table(head, rows)
+    return table(line(head), rows)
 
 
 TABLES = (misfits, bases, causes, linearity, costs)
 
 
-def replaced(text, made):
-    """The text with each table whose head is that of a made one in its place."""
-    for new in made:
-        head = new.partition("\n")[0]
-        if head not in text:
-            fail(f"{PAGE}: no table with the head \"{head}\"")
-        before, _, rest = text.partition(head)
-        after = re.sub(r"\A\n(\|.*\n)*", "", rest)
-        text = before + new + after
-    return text
-
-
-def block(name, rows):
-    return f"${name} << EOD\n" + "".join(" ".join(f"{x:.6g}" for x in row) + "\n" for row in rows) + "EOD\n"
-
-
-def draw(runs, picture):
+def draw_misfits(runs, picture):
     """Three panels of misfit against depth, w = 0.1 h, and one of all profiles with w = 1.5 d."""
     panels = [(region, "w_depths", f"{title}, w = 0.1 h") for region, title in REGIONS.items()]
     panels.append(("all", "w_diameters", "of all profiles, w = 1.5 d"))
@@ -297,19 +279,20 @@ def draw(runs, picture):
                 name = f"p{number}{model}{str(friction).replace('.', '')}".replace("_", "")
                 data += block(name, rows)
                 told = f"title 'μ = {friction:g}'" if number == 0 and model == HOMOGENEOUS else "notitle"
-                curves.append(f"${name} using 1:2:3:4 with yerrorbars pt {point} ps 0.7 lc rgb '{COLOURS[model]}' {told}")
-                curves.append(f"${name} using 1:2 with lines lc rgb '{COLOURS[model]}' notitle")
+                colour = f"lc rgb '{COLOURS[model]}'"
+                curves.append(f"${name} using 1:2:3:4 with yerrorbars pt {point} ps 0.7 {colour} {told}")
+                curves.append(f"${name} using 1:2 with lines {colour} notitle")
         if curves:
             plots += f"set title 'Misfit {title}'\nplot " + ", ".join(curves) + "\nunset key\nunset label\n"
     if not plots:
         fail("no run has ended; nothing to draw")
-    head = (f'set terminal svg size 960,800 background "white" font "sans,13"\nset output "{picture}"\n'
-            "set multiplot layout 2,2 margins 0.08,0.99,0.07,0.88 spacing 0.08,0.13\nset logscale x\nset xtics (8, 15, 30, 60, 120)\nset grid\n"
-            f"set xrange [6:{wide:g}]\nset yrange [0:{1.15 * most or 100:g}]\nset xlabel 'depth / mean diameter'\n"
-            "set ylabel 'misfit (%)'\nset key top right\n"
-            f"set label 1 'one stiffness' at screen 0.3,0.96 center tc rgb '{COLOURS[HOMOGENEOUS]}'\n"
-            f"set label 2 'stiffness by depth' at screen 0.75,0.96 center tc rgb '{COLOURS[BY_DEPTH]}'\n")
-    subprocess.run(["gnuplot"], input=data + head + plots + "unset multiplot\n", check=True, text=True)
+    layout = ("set multiplot layout 2,2 margins 0.08,0.99,0.07,0.88 spacing 0.08,0.13\n"
+              "set logscale x\nset xtics (8, 15, 30, 60, 120)\nset grid\n"
+              f"set xrange [6:{wide:g}]\nset yrange [0:{1.15 * most or 100:g}]\nset xlabel 'depth / mean diameter'\n"
+              "set ylabel 'misfit (%)'\nset key top right\n"
+              f"set label 1 'one stiffness' at screen 0.3,0.96 center tc rgb '{COLOURS[HOMOGENEOUS]}'\n"
+              f"set label 2 'stiffness by depth' at screen 0.75,0.96 center tc rgb '{COLOURS[BY_DEPTH]}'\n")
+    draw(picture, "960,800", data + layout + plots + "unset multiplot\n")
 
 
 def main():
@@ -321,9 +304,9 @@ def main():
     runs = finished(given.states)
     made = [one(runs) for one in TABLES]
     if given.picture:
-        draw(runs, given.picture)
+        draw_misfits(runs, given.picture)
     if given.write:
-        PAGE.write_text(replaced(PAGE.read_text(), made))
+        write_file(PAGE, put(PAGE.read_text(), made, PAGE).encode())
     elif not given.picture:
         print("\n".join(made), end="")
 

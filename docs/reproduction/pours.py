@@ -6,7 +6,8 @@
 
 Both read the states (states/*.h5.xz), or else results/*.json, and measure as heaps.py does: sigma_xx / sigma_yy on the
 axis, shoulder less centre of the pressure in the windows of dip.difference, at the base (over rho g h) and a quarter of
-the height above it (over that of the part above), volume fraction and slope. A cell is the mean over piles with its standard error.
+the height above it (over that of the part above), volume fraction and slope. A cell is the mean over piles with its
+standard error.
 
 A pour: how many piles would bring the error of the difference to ERROR, and how many would see DIP, Roul's by his
 constants, with a probability of POWER if there were none (two-sided, 5 %). A cause: its difference from the base, bold
@@ -189,7 +190,7 @@ def causes(listed=CAUSES, folder=STATES):
 
 
 def judged_causes(base, found):
-    """{cause: {figure: (difference, p over all causes of the figure, what it could have seen)}}, of LEAST piles each."""
+    """{cause: {figure: (difference, p over all causes, what it could have seen)}}, of LEAST piles each."""
     out = {name: {} for name, one in found.items() if len(one["dip"]) >= LEAST}
     for figure in FIGURES:
         both = [compared(found[name][figure], base[figure]) for name in out]
@@ -201,8 +202,8 @@ def judged_causes(base, found):
 def causes_table(base, found):
     lines = [["one change", "piles", "σxx/σyy on the axis", "less the base", "it could see", "shoulder − centre (ρgh)",
               "less the base", "it could see", "volume fraction", "slope, °"]]
-    lines.append(["base", str(len(base["dip"])), cell(mean_of(base["axis"])), "", "", cell(mean_of(base["dip"])), "", "",
-                  cell(mean_of(base["fraction"]), 4), cell(mean_of(base["slope"]), 1)])
+    lines.append(["base", str(len(base["dip"])), cell(mean_of(base["axis"])), "", "", cell(mean_of(base["dip"])),
+                  "", "", cell(mean_of(base["fraction"]), 4), cell(mean_of(base["slope"]), 1)])
     judged = judged_causes(base, found)
     for name, one in found.items():
         words = WORDS.get(name, f"`{name}`")

@@ -17,6 +17,7 @@ import causes  # noqa: E402
 import limit  # noqa: E402
 import measure  # noqa: E402
 import rve_scatter as scatter  # noqa: E402
+import tables  # noqa: E402
 import page as maker  # noqa: E402
 from rows import (FILES, NOT_RUN, RULES, agreement, all_rows, band, judged, members_of, of_test,  # noqa: E402
                   off_band, piles_to_inform, places, read_toml, unanswered)
@@ -988,8 +989,19 @@ def test_the_tables_of_causes_name_what_is_missing(tmp_path):
 
 def test_the_tables_of_wellmanns_page_are_what_the_script_makes():
     text = (ROOT / "docs/cases/wellmann-box.md").read_text()
-    assert causes.put(text, causes.tables()) == text, "docs/reproduction/causes.py --write makes them again"
-    assert causes.put(text.replace("| 3 |", "| 4 |"), causes.tables()) == text
+    assert tables.put(text, causes.tables(), "") == text, "docs/reproduction/causes.py --write makes them again"
+    assert tables.put(text.replace("| 3 |", "| 4 |"), causes.tables(), "") == text
+
+
+def test_a_table_without_a_place_on_its_page_is_told(capsys):
+    made = tables.table("| a | b |", [["1", "2"]])
+    assert tables.put("t\n\n| a | b |\n|---|---|\n| 0 | 0 |\n| 3 | 4 |\n\nu\n", [made], "p.md") == (
+        "t\n\n| a | b |\n|---|---|\n| 1 | 2 |\n\nu\n")
+    for text in ("t\n", "| a | b | c |\n", "x| a | b |\n", "| a | b |\n\n| a | b |\n"):
+        with pytest.raises(SystemExit) as ended:
+            tables.put(text, [made], "p.md")
+        assert ended.value.code == 2
+        assert 'p.md: found no table with the line "| a | b |", or several' in capsys.readouterr().err
 
 
 def layers_under_loads(tmp_path, name, settings, profiles="", **summary):
