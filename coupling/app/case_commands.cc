@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include "coupling/app/commands.h"
@@ -57,14 +58,35 @@ void add_check(CLI::App& app, Action& action) {
   });
 }
 
+namespace {
+
+// Keys of what has this name; of a case file or a shipped case, those of its study.
+std::string keys_of(const std::string& name) {
+  try {
+    return keys_text(name);
+  } catch (const std::invalid_argument&) {
+    std::string file;
+    try {
+      file = find_case(name);
+    } catch (const std::invalid_argument&) {
+      // no case either: the first complaint lists what there is
+    }
+    if (file.empty()) throw;
+    return keys_text(read_case(file, false, {}).study);
+  }
+}
+
+}  // namespace
+
 void add_keys(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("keys", "every case key: type, unit, default, range, meaning");
   auto names = std::make_shared<std::vector<std::string>>();
   auto markdown = std::make_shared<bool>(false);
   auto summary = std::make_shared<bool>(false);
   command->add_option("name", *names,
-                      "only those of a study (pile), a section (fit), a key (fit.heights) or with "
-                      "a part (frict); cone, pair, sample and wedge are studies and, with a dot "
+                      "only those of a study (pile) or a case of it (pile-point-source), a section "
+                      "(fit), a key (fit.heights) or with a part (frict); cone, pair, sample and "
+                      "wedge are studies and, with a dot "
                       "behind, sections (pair.)");
   command->add_flag("--markdown", *markdown, "as the page docs/keys.md");
   command->add_flag("--summary", *summary, "the keys of summary.json instead");
@@ -76,7 +98,7 @@ void add_keys(CLI::App& app, Action& action) {
         say("{}", keys_markdown());
       } else {
         std::vector<std::string> texts;
-        for (const std::string& name : *names) texts.push_back(keys_text(name));
+        for (const std::string& name : *names) texts.push_back(keys_of(name));
         say("{}", names->empty() ? keys_text("") : fmt::format("{}", fmt::join(texts, "\n")));
       }
       return 0;

@@ -172,7 +172,7 @@ void set(const Key& key, const Assignment& a, Case& value) {
       key.where);
 }
 
-[[noreturn]] void unknown(const Assignment& a) {
+[[noreturn]] void unknown(const Assignment& a, const std::string& study) {
   const std::string section = a.path.substr(0, a.path.find('.'));
   if (section == "units" || section == "unit") {
     reject(a, section,
@@ -203,7 +203,10 @@ void set(const Key& key, const Assignment& a, Case& value) {
   for (const Key& key : keys()) {
     everywhere.push_back(key.path());
     if (sectioned && key.section == section) here.push_back(key.path());
-    if (key.name == name && near.empty()) near = key.path();
+    if (key.name == name &&
+        (near.empty() || (!key_applies(*find_key(near), study) && key_applies(key, study)))) {
+      near = key.path();
+    }
     if (sectioned && key.name == section + "_" + name) joined = key.path();
   }
   if (!joined.empty()) near = joined;
@@ -314,7 +317,7 @@ void apply(Draft& draft, const Assignment& a) {
         (a.path == "model" || std::find(names.begin(), names.end(), a.path) != names.end())) {
       return;
     }
-    unknown(a);
+    unknown(a, draft.value.study);
   }
   if (a.table || a.other) wrong_type(*key, a);
   set(*key, a, draft.value);

@@ -239,8 +239,9 @@ void Assembly::refuse_unknown(const ForeignRow& row, const ForeignColumn& column
     row.refuse(fmt::format("column {}: found nothing, expected an id; a row of sums is no contact",
                            column.name));
   if (!number)
-    row.refuse(fmt::format("contact with the unknown wall \"{}\"; {}{}", text, known_grains(),
-                           options_.files.empty() ? "" : "; --wall NAME:AXIS=POSITION names it"));
+    row.refuse(fmt::format(
+        "contact with the unknown wall \"{}\"; {}{}", text, known_grains(),
+        options_.files.empty() ? "" : fmt::format("; --wall {}:AXIS=POSITION describes it", text)));
   const std::int64_t id = row.told_id(column).id;
   const std::string hint =
       options_.files.empty()

@@ -426,10 +426,14 @@ void TableColumns::require_all(const std::vector<std::vector<std::string>>& want
       hints.push_back(fmt::format("{} ({})", names.front(), near.substr(9)));
   }
   if (lacking.size() < 2 || (table_.arrays != nullptr && !table_.any_names)) return;
+  // Columns of a compute have numbers alone: which is which, the user must say.
+  const bool numbered = std::any_of(table_.columns->begin(), table_.columns->end(),
+                                    [](const auto& name) { return name.ends_with("[1]"); });
   throw std::invalid_argument(fmt::format(
-      "{}:{}: no columns \"{}\"; found: {}{}; other names by --column OURS=THEIRS", table_.file,
+      "{}:{}: no columns \"{}\"; found: {}{}; other names by --column OURS=THEIRS{}", table_.file,
       table_.header_line, fmt::join(lacking, "\", \""), fmt::join(*table_.columns, " "),
-      hints.empty() ? "" : fmt::format("; nearest: {}", fmt::join(hints, ", "))));
+      hints.empty() ? "" : fmt::format("; nearest: {}", fmt::join(hints, ", ")),
+      numbered ? ", such as --column 'i,j=c_ids[1..2]'" : ""));
 }
 
 ForeignColumn TableColumns::need(const std::string& ours) const {

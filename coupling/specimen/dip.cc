@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "coupling/averaging/base.h"
@@ -67,13 +68,24 @@ std::vector<std::string> dip_lines(const Dip& dip) {
   }
   const char* const found = dip.verdict == "dip"    ? "The heaps have a pressure dip"
                             : dip.verdict == "peak" ? "The heaps have a pressure peak and no dip"
-                                                    : "The heaps have no dip and no peak";
+                                                    : "The heaps show no dip or peak beyond chance";
   const double p = dip.difference.p_value;
-  return {fmt::format("{} ({} realizations, 95 %).", found, n),
-          fmt::format("{}: difference {:.3f} ± {:.3f}{}. If there were none, a difference this "
-                      "large would occur by chance in {:.2g} % of ensembles.",
-                      numbers, dip.difference.mean, dip.difference.standard_error,
-                      few_realizations(n), 200 * std::min(p, 1 - p))};
+  std::vector<std::string> out{
+      fmt::format("{} ({} realizations, 95 %).", found, n),
+      fmt::format("{}: difference {:.3f} ± {:.3f}{}. If there were none, a difference this "
+                  "large would occur by chance in {:.2g} % of ensembles.",
+                  numbers, dip.difference.mean, dip.difference.standard_error, few_realizations(n),
+                  200 * std::min(p, 1 - p))};
+  if (dip.verdict == "neither") {
+    // What the heaps leave open: without it "no dip" is read as a measurement.
+    const double reach =
+        dip.difference.standard_error * quantile(boost::math::students_t(n - 1), 1 - kLevel / 2);
+    out.back() += fmt::format(
+        " The true difference can be anything from {:.2f} (peak) to {:.2f} (dip) rho g h: pour "
+        "more heaps to narrow this.",
+        dip.difference.mean - reach, dip.difference.mean + reach);
+  }
+  return out;
 }
 
 }  // namespace grainfield::coupling

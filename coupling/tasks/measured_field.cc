@@ -105,8 +105,11 @@ class Reader {
       : request_(request), table_(table) {
     for (std::size_t k = 0; k < table.columns->size(); ++k)
       headings_.push_back(heading_of((*table.columns)[k], static_cast<int>(k)));
+    name_value();
   }
 
+  /// Component of all values, where their column has its name ("pressure"); else empty.
+  const std::string& component() const { return component_; }
   bool has(const std::string& name) const { return find(name) != nullptr; }
   /// Whether it has columns of other names, one of which may be a column that is missing.
   bool has_others() const {
@@ -127,12 +130,13 @@ class Reader {
     if (const Heading* found = find(name)) return {name, found->index, std::nullopt, std::nullopt};
     std::vector<std::string> there;
     for (const Heading& h : headings_) there.push_back(h.name);
+    const std::string meant = continuum::misspelt(name, there);
     refuse(fmt::format(
-        "no column \"{}\"; found: {}; did you mean {}? Expected are x (UNIT), component, value "
-        "(UNIT), "
-        "error (UNIT) and, for cones, r (UNIT) instead of x, with empty cells where an error is "
-        "unknown",
-        name, fmt::join(there, ", "), continuum::nearest(name, there)));
+        "no column \"{}\"; found: {}{}; expected x (UNIT), component, value (UNIT), error (UNIT) "
+        "and, for cones, r (UNIT) instead of x, with empty cells where an error is unknown; a "
+        "measurement of one component may write pressure (UNIT) or shear (UNIT) instead of both",
+        name, fmt::join(there, ", "),
+        meant.empty() ? "" : fmt::format("; did you mean {}?", meant)));
   }
   Measure length(const std::string& name, bool needed) const {
     return measure(name, needed, lengths(), request_.height);
@@ -142,6 +146,20 @@ class Reader {
   }
 
  private:
+  // Without columns component and value, the only column named by a component has the values.
+  void name_value() {
+    if (has("component") || has("value")) return;
+    Heading* only = nullptr;
+    for (Heading& h : headings_) {
+      const std::string plain = plain_column_name(h.name);
+      if (plain != "pressure" && plain != "shear") continue;
+      if (only != nullptr) return;
+      only = &h;
+    }
+    if (only == nullptr) return;
+    component_ = plain_column_name(only->name);
+    only->name = "value";
+  }
   // By its name; else the only one that is the same without regard to capitals and signs.
   const Heading* find(const std::string& name) const {
     for (const Heading& h : headings_)
@@ -191,6 +209,7 @@ class Reader {
   const MeasuredRequest& request_;
   const ForeignTable& table_;
   std::vector<Heading> headings_;
+  std::string component_;
 };
 
 // Column of the field and the sign of a value in it.
@@ -378,7 +397,8 @@ namespace {
 ForeignTable table_of(const std::string& file) {
   std::vector<std::string> units = names_of(lengths()), stresses_known = names_of(stresses());
   units.insert(units.end(), stresses_known.begin(), stresses_known.end());
-  return scan_csv(file, {{"x", "y", "z", "r", "component", "value", "error"}, units});
+  return scan_csv(
+      file, {{"x", "y", "z", "r", "component", "value", "error", "pressure", "shear"}, units});
 }
 
 }  // namespace
@@ -419,7 +439,8 @@ Field measured_field(const MeasuredRequest& given) {
   const Measure x = columns.length(radial ? "r" : "x", true), side = columns.length("y", false),
                 up = columns.length("z", false), value = columns.stress("value", true),
                 error = columns.stress("error", columns.has_others());
-  const ForeignColumn component = columns.need("component");
+  const std::string& all = columns.component();
+  const ForeignColumn component = all.empty() ? columns.need("component") : ForeignColumn{};
   // By place, from left to right, lowest first.
   std::map<std::array<double, 3>, Place> found;
   TableReader reader;
@@ -431,7 +452,8 @@ Field measured_field(const MeasuredRequest& given) {
       row.refuse(fmt::format("column r: found {}, allowed: 0 or more, a distance from the axis",
                              row.text(x.column)));
     const auto round = [&](double length) { return std::round(length / h / kSamePlace); };
-    const auto [name, sign] = component_of(row, row.text(component), request.dim);
+    const auto [name, sign] =
+        component_of(row, all.empty() ? row.text(component) : all, request.dim);
     Value one{sign * value.of(row), kNan, row.line};
     if (error && !row.empty(error.column)) one.error = error.of(row);
     if (one.error <= 0)
@@ -442,8 +464,9 @@ Field measured_field(const MeasuredRequest& given) {
     if (place.values.empty()) place.at = {x.of(row), beside, at};
     const auto [there, fresh] = place.values.emplace(name, one);
     if (!fresh)
-      row.refuse(fmt::format("{} at x = {:g} m is there already, at {}:{}", row.text(component),
-                             x.of(row), request.file, there->second.line));
+      row.refuse(fmt::format("{} at x = {:g} m is there already, at {}:{}",
+                             all.empty() ? row.text(component) : all, x.of(row), request.file,
+                             there->second.line));
   });
   if (found.empty())
     throw std::invalid_argument(

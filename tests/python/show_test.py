@@ -92,6 +92,15 @@ def test_long_tables_show_both_ends_and_escape_words():
     assert cells(gf.Table({}, {}, [])._repr_html_()) == [[]]
 
 
+def test_a_table_names_its_columns_and_its_profiles():
+    table = gf.Table({"profile": np.array(["base"]), "x": np.zeros(1)}, {"x": "m"}, [])
+    with pytest.raises(KeyError, match="no column y; there are: profile, x.$"):
+        table["y"]
+    with pytest.raises(KeyError, match=r"no column base; .*; base is a profile: plot\(profile='base'\)"):
+        table["base"]
+    assert table.get("base") is None
+
+
 def test_tables_become_frames():
     pytest.importorskip("pandas")
     result = gf.compare(gf.average(HEAPS, frame="heap", cuts=[0.2]), "bcc")

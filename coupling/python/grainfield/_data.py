@@ -413,6 +413,10 @@ class Table(dict):
         self.units = dict(units)
         self.notes = notes  #: the comment lines
 
+    def __missing__(self, name: str) -> Any:
+        hint = f"; {name} is a profile: plot(profile={name!r})" if name in self.get("profile", ()) else ""
+        raise KeyError(f"no column {name}; there are: {', '.join(self)}{hint}")
+
     def to_pandas(self) -> Any:
         """A DataFrame with .attrs["units"] and .attrs["notes"]."""
         return _show.frame(dict(self), self.units, notes=self.notes)

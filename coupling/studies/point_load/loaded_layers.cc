@@ -7,10 +7,17 @@
 #include "coupling/averaging/average.h"
 #include "coupling/averaging/base.h"
 #include "coupling/run/study_result.h"
+#include "coupling/statistics/spread.h"
 #include "coupling/studies/point_load/figures.h"
 #include "coupling/studies/point_load/simulation.h"
 
 namespace grainfield::coupling {
+namespace {
+
+// A load that moves a grain by more radii and changes a larger share of the contacts is not small.
+constexpr double kMoved = 0.5, kChanged = 0.05;
+
+}  // namespace
 
 LoadedLayers::LoadedLayers(const Case& a_case, const std::vector<std::string>& realizations,
                            int threads, int dimension, std::size_t beside)
@@ -68,6 +75,22 @@ void LoadedLayers::add_own_figures(Summary& summary) const {
   add_figures(summary, figures);
   add_values(layers_rows(), {layer.depth, force, layer.diameter, dim}, summary);
   for (const MethodAverages& a : methods) add_method_figures(summary, a, component());
+}
+
+void LoadedLayers::add_doubts(std::vector<std::string>& doubts) const {
+  const auto mean = [&](const char* key) {
+    const auto at = figures.find(key);
+    return at == figures.end() ? 0 : spread_of(at->second).mean;
+  };
+  const double moved = mean("load.max_displacement_over_radius");
+  const double changed = mean("load.contacts_gained") + mean("load.contacts_lost");
+  const double contacts = mean("dem.contacts");
+  if (!(moved > kMoved && changed > kChanged * contacts)) return;
+  const bool by_weights = dim == 3 && value.get<dem::PointLoadSetup>().load.weights > 0;
+  doubts.push_back(fmt::format(
+      "The load of {:.3g} N moves a grain by {:.2g} radii, and changes {:.0f} contacts of {:.0f}: "
+      "grains rearrange, so the models do not apply. Lower load.{}.",
+      force, moved, changed, contacts, by_weights ? "weights" : "force"));
 }
 
 Field in_models_frame(Field field, const Eigen::MatrixXd& points, int nx, int ny, int nz) {

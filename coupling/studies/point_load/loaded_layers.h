@@ -38,6 +38,8 @@ struct LoadedLayers {
   /// The first method's lines, and the base; in space of radii. `note` ends that of tables.
   Observations observed(const Ensemble& base, const Field& map, const std::string& note = "") const;
   void add_own_figures(Summary& summary) const;
+  /// Appends, where the load moves grains and changes many contacts, that no elastic model applies.
+  void add_doubts(std::vector<std::string>& doubts) const;
 };
 
 /// A field on points of the models' frame; nx, ny, nz: of a grid.

@@ -189,6 +189,7 @@ class SpaceAnalysis {
     }
     predicted_.add_peak(seen.told, *all_.kernel, out.summary);
     out.comparison = compared(seen, models);
+    all_.add_doubts(out.comparison.judgement.doubts);
     add_compared(out.summary, seen, out.comparison, seen.lines.size() - 1);
   }
 

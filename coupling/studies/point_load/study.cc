@@ -52,6 +52,7 @@ class PlaneAnalysis {
     const std::vector<SeenModel> models = see_models(seen, all_.value.models, evaluate);
     add_models(out, seen, models);
     out.comparison = compared(seen, models);
+    all_.add_doubts(out.comparison.judgement.doubts);
     all_.add_own_figures(out.summary);
     add_compared(out.summary, seen, out.comparison, seen.lines.size() - 1);
     out.page = layer_page;
@@ -131,8 +132,8 @@ void check_point_load(const Case& value) {
   const auto& load = value.get<dem::PointLoadSetup>().load;
   if (p.dim == 3 && load.weights > 0 && load.force != dem::LoadSetup().force) {
     throw std::invalid_argument(
-        fmt::format("load.force: found {:g} beside load.weights = {:g}, allowed: with load.weights "
-                    "= 0 (spheres are loaded with so many weights of a grain otherwise)",
+        fmt::format("load.force: found {:g} beside load.weights = {:g}, the load in weights of a "
+                    "sphere; allowed: one of both; to give N, add --set load.weights=0",
                     load.force, load.weights));
   }
   if (const auto& files = value.get<GrainFiles>().files; p.dim == 3 && !files.empty()) {

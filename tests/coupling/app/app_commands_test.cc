@@ -71,6 +71,7 @@ TEST(Commands, KeysAndCases) {
   EXPECT_THAT(program("keys material").out, HasSubstr("friction = 0.5"));
   EXPECT_THAT(program("keys fit.heights material.young").out,
               ::testing::AllOf(HasSubstr("  heights = "), HasSubstr("  young = ")));
+  EXPECT_EQ(program("keys pile-point-source").out, program("keys pile").out);
   EXPECT_THAT(program("keys --summary").out, HasSubstr("response.total_over_load"));
   const Output cases = program("cases");
   EXPECT_THAT(cases.out, HasSubstr("point-load-mono.toml"));

@@ -441,6 +441,8 @@ TEST(CaseErrors, Piles) {
               HasSubstr("floor.length: found -1, allowed: 1e-06 to 1e+06"));
   EXPECT_THAT(pile("[sleep]\non = 1\n"),
               HasSubstr("sleep.on: found 1 (integer), expected a boolean, written true or false"));
+  EXPECT_THAT(pile("radius = 0.002\n"),
+              HasSubstr("radius: unknown key; did you mean shape.radius?"));
   EXPECT_THAT(pile("[floor]\nfriction = 0.5\n"),
               HasSubstr("floor.friction: unknown key; did you mean material.floor_friction"));
   EXPECT_THAT(pile("[change]\ngravity = [0.0]\n"),

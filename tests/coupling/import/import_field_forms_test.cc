@@ -63,6 +63,40 @@ TEST(ImportFieldForms, HeadsOfOtherWritersAreTheSame) {
   EXPECT_EQ(scaled.columns[0].value[0], -1200);
 }
 
+// Pressures alone need no column that says so in every row.
+TEST(ImportFieldForms, AColumnMayBeNamedByItsComponent) {
+  const Folder folder;
+  const std::string places[] = {"-100", "0", "100"};
+  std::string two = "x (mm),component,value (kPa),error (kPa)\n",
+              one = "x (mm);Pressure (kPa);error (kPa)\n";
+  for (const std::string& x : places) {
+    two += x + ",pressure,0.5,0.1\n";
+    one += x + ";0,5;0,1\n";
+  }
+  const Field plain = field_of(folder, two), named = field_of(folder, one);
+  ASSERT_EQ(named.columns.size(), 1U);
+  EXPECT_EQ(named.columns[0].name, "sigma_yy");
+  EXPECT_EQ(named.points, plain.points);
+  EXPECT_EQ(named.columns[0].value, plain.columns[0].value);
+  EXPECT_EQ(named.columns[0].error, plain.columns[0].error);
+  EXPECT_THAT(field_of(folder, "x (mm),shear (Pa)\n-100,-30\n100,30\n").columns[0].name,
+              "sigma_xy");
+  const auto refused = [&](const std::string& text) -> std::string {
+    try {
+      field_of(folder, text);
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "";
+  };
+  // Two components in one row: whose is the error?
+  EXPECT_THAT(
+      refused("x (mm),pressure (kPa),shear (kPa),error (kPa)\n0,1,0,0.1\n"),
+      HasSubstr("no column \"value\"; found: x, pressure, shear, error; expected x (UNIT)"));
+  EXPECT_THAT(refused("x (mm),component,valeu (kPa)\n0,pressure,1\n"),
+              HasSubstr("did you mean valeu?"));
+}
+
 TEST(ImportFieldForms, UnitsOfAnotherKindAreRefused) {
   const Folder folder;
   EXPECT_THROW(field_of(folder, "x (mm),component,value (kg),error (kPa)\n" + rows()),

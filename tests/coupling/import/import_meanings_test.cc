@@ -171,6 +171,16 @@ TEST_F(ImportMeanings, HintsOfDumpsLookBehindWhatMadeAColumn) {
           .refused;
   EXPECT_THAT(types, HasSubstr("no columns \"i\", \"j\""));
   EXPECT_THAT(types, Not(HasSubstr("nearest")));
+  // Columns of our own script: the ids, and not the first part of the force, are nearest to i.
+  const std::string numbered =
+      import(
+          "lammps",
+          {write("i.dump", atoms(0, "")),
+           write("n.dump", entries(0, "1 2 -1 0 0 0 0 0\n",
+                                   "c_ids[1] c_ids[2] c_p[1] c_p[2] c_p[3] c_p[4] c_p[5] c_p[6]"))})
+          .refused;
+  EXPECT_THAT(numbered, HasSubstr("nearest: i (c_ids[1]), j (c_ids[2]); other names by --column "
+                                  "OURS=THEIRS, such as --column 'i,j=c_ids[1..2]'"));
 }
 
 TEST_F(ImportMeanings, PartsWhoseLetterStandsBehind) {

@@ -77,7 +77,7 @@ TEST(ImportMistakes, MistakesInCsv) {
        "(--wall)"},
       {g, c + "1,flor,0,0\n", "--wall floor:y=-1",
        "c.txt:3: contact with the unknown wall \"flor\"; known: 2 grains with ids from 1 to 2, "
-       "walls floor"},
+       "walls floor; --wall flor:AXIS=POSITION describes it"},
       {g, c + "2,2,0,0\n", "", "c.txt:3: grain 2 in contact with itself"},
       {g, c + "2,1,0,0\n", "", "c.txt:3: the contact of grains 1 and 2 is there already, at "},
       {g, c + "2,1,0,inf\n", "", "c.txt:3: column fy: found \"inf\""},

@@ -313,6 +313,23 @@ TEST(PileAnalysis, FewRealizationsGiveNoVerdict) {
               ::testing::Not(HasSubstr("uncertain")));
 }
 
+// "No dip" of a few noisy heaps is no measurement: the sentence says what they leave open.
+TEST(PileAnalysis, NeitherSaysWhatTheHeapsLeaveOpen) {
+  std::vector<BaseWindows> piles(4);
+  const double differences[] = {-0.1, 0.3, 0.0, 0.2};
+  for (std::size_t k = 0; k < 4; ++k) {
+    piles[k].centre = 0.6;
+    piles[k].shoulder = 0.6 + differences[k];
+  }
+  const Dip dip = judge_dip(piles);
+  EXPECT_EQ(dip.verdict, "neither");
+  const std::vector<std::string> lines = dip_lines(dip);
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0], "The heaps show no dip or peak beyond chance (4 realizations, 95 %).");
+  // 0.1 -+ 3.1824 x 0.0913 (Student's t of three degrees of freedom).
+  EXPECT_THAT(lines[1], HasSubstr("anything from -0.19 (peak) to 0.39 (dip) rho g h"));
+}
+
 TEST(PileAnalysis, WithoutADipFewEnsemblesShowOne) {
   // Windows of noise alone: one verdict in twenty is wrong, dips and peaks together.
   dem::Random random(17);

@@ -254,6 +254,23 @@ std::string with(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
+// A load of hundreds of weights goes through the layer: the verdict says that no model applies.
+TEST(SpaceLoadRun, ALoadThatRearrangesGrainsIsADoubt) {
+  const Folder folder;
+  const std::string file = folder.write("x.toml", with("weights = 1\n", "weights = 300\n"));
+  const Output output =
+      program("run " + file + " --set load.probe_strain=0 -o " + (folder / "out"));
+  EXPECT_EQ(output.code, 0) << output.err;
+  const std::string doubts =
+      std::get<std::string>(read_summary(folder / "out/summary.json").at("verdict.doubts"));
+  EXPECT_THAT(doubts,
+              HasSubstr("grains rearrange, so the models do not apply. Lower load.weights."));
+  const Summary small = read_summary(results() / "out/summary.json");
+  const auto at = small.find("verdict.doubts");
+  if (at != small.end())
+    EXPECT_THAT(std::get<std::string>(at->second), ::testing::Not(HasSubstr("rearrange")));
+}
+
 TEST(SpaceLoadRun, RefusesWhatDoesNotHoldInSpace) {
   EXPECT_EQ(complaint(kLayer), "");
   EXPECT_THAT(complaint(with("kind = \"random\"", "kind = \"layered\"")),
@@ -261,8 +278,10 @@ TEST(SpaceLoadRun, RefusesWhatDoesNotHoldInSpace) {
   EXPECT_THAT(complaint(with("dim = 3\n", "")), HasSubstr("only in three dimensions"));
   EXPECT_THAT(complaint(with("law = \"hertz\"", "law = \"overlap_area\"")),
               HasSubstr("material.law: found \"overlap_area\""));
-  EXPECT_THAT(complaint(with("[load]\n", "[load]\nforce = 5\n")),
-              HasSubstr("load.force: found 5 beside load.weights = 1"));
+  EXPECT_THAT(
+      complaint(with("[load]\n", "[load]\nforce = 5\n")),
+      HasSubstr("load.force: found 5 beside load.weights = 1, the load in weights of a sphere; "
+                "allowed: one of both; to give N, add --set load.weights=0"));
   EXPECT_EQ(complaint(with("[load]\n", "[load]\nmethod = \"newton\"\n")), "");
   const Folder folder;
   const std::string disk = folder.write("x.toml", with("[load]\n", "[load]\nradius = 0.02\n"));
