@@ -97,11 +97,11 @@ Found by_newton(const Snapshot& rest, const EngineSettings& settings, std::int64
   return {r.contacts_lost + r.newly_sliding, r.contacts_gained};
 }
 
-// Every free grain is loaded. Where the factor is so small that the response is linear up to it,
-// nothing changes below it and one contact or more does above.
 enum class End { sharp, bound };
 
-// `within`: the factor by which either side is apart from it.
+// Every free grain is loaded. Where the factor is so small that the response is linear up to it,
+// nothing changes below it, and one contact or more does above where it is sharp. `within`: by
+// which factor either side is apart from it.
 void expect_as_newton(const EngineSettings& settings, Snapshot rest, int up, double within,
                       End kind = End::sharp) {
   QuasistaticSettings how;
