@@ -243,6 +243,40 @@ def linearity(runs):
     return table(head, rows)
 
 
+def with_error(run, key, digits):
+    """A figure over packings and its standard error."""
+    value, error = run.number(key), run.number(f"{key}.standard_error")
+    if not math.isfinite(value):
+        return "–"
+    return f"{value:.{digits}f}" + (f" ± {error:.{digits}f}" if math.isfinite(error) else "")
+
+
+def ends(runs):
+    """Where linear response ends, of the runs that tell."""
+    head = ["depth / d", "μ", "first contact slides or opens at (weights of a disk)", "first opens at",
+            "a hundredth have at", "the same over depth / d"]
+    rows = []
+    for run in usual(runs):
+        key = "linearity.hundredth_changes"
+        if math.isfinite(run.number(key)):
+            shares = [run.number(k) / run.depth for k in (key, f"{key}.standard_error")]
+            rows.append(of(run) + [with_error(run, f"linearity.first_{name}", 2) for name in ("changes", "opens")]
+                        + [with_error(run, key, 1), f"{shares[0]:.2f} ± {shares[1]:.2f}"])
+    return table(head, rows)
+
+
+def settlements(runs):
+    """Settlements over the predicted ones, of the runs that tell."""
+    head = ["depth / d", "μ", "surface, h/4 to h from the load: over one stiffness", "over stiffness by depth",
+            "below the load, h/4 to 3h/4: over one stiffness", "over stiffness by depth", "loaded disk: E_v u / F"]
+    rows = []
+    for run in usual(runs):
+        keys = [f"settlement.{model}.{place}" for place in ("surface", "axis") for model in (HOMOGENEOUS, BY_DEPTH)]
+        if math.isfinite(run.number(keys[0])):
+            rows.append(of(run) + [with_error(run, key, 2) for key in [*keys, "response.settlement"]])
+    return table(head, rows)
+
+
 def costs(runs):
     head = ["depth / d", "μ", "disks in a layer", "layers", "CPU min", "deposit and load",
             "rest, moduli, response (clock)", "finite elements (clock)", "memory (MB)"]
@@ -255,6 +289,8 @@ def costs(runs):
 
 
 TABLES = (misfits, bases, causes, linearity, costs)
+#: Tables of figures that not every run has: of none, there is no table.
+FURTHER = (ends, settlements)
 
 
 def replaced(text, made):
@@ -320,6 +356,7 @@ def main():
     given = options.parse_args()
     runs = finished(given.states)
     made = [one(runs) for one in TABLES]
+    made += [new for new in (one(runs) for one in FURTHER) if new.count("\n") > 2]
     if given.picture:
         draw(runs, given.picture)
     if given.write:

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <vector>
 
 namespace grainfield::dem {
 namespace {
