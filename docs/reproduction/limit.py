@@ -4,9 +4,10 @@
     docs/reproduction/limit.py [--write] [--picture PICTURE] [--states FOLDER]
 
 Reads the runs of the LISTS in states/boussinesq/ and states/boussinesq-space/ (runs/next.py computes them): the
-figures in NAME.json, and on the axis NAME.profiles.csv where it is kept. A misfit is the root of the squared
-distance of the grains' mean from a prediction less the variance of that mean, over the root of the squared
-prediction; where it is within its noise, "<" and the upper end of 95 % stand for it. "–" has not run.
+figures in NAME.json (those that it lacks in states/boussinesq-ends/NAME.json), and on the axis NAME.profiles.csv
+where it is kept. A misfit is the root of the squared distance of the grains' mean from a prediction less the
+variance of that mean, over the root of the squared prediction; where it is within its noise, "<" and the
+upper end of 95 % stand for it. "–" has not run.
 --write replaces the tables of the page that have the same heads. Needs gnuplot for the picture.
 """
 import argparse
@@ -27,6 +28,7 @@ from next import fail, read_list  # noqa: E402
 
 PAGE = HERE.parent / "cases" / "boussinesq-limit.md"
 LISTS = ("boussinesq", "boussinesq-space")
+ENDS = "boussinesq-ends"
 ROUGH = "rough"  # the base on which no contact slides
 HOMOGENEOUS, BY_DEPTH = f"homogeneous_{ROUGH}", f"by_depth_{ROUGH}"
 REGIONS = {"base": "on the base", "axis": "on the axis", "all": "of all profiles"}
@@ -42,6 +44,9 @@ class Run:
     def __init__(self, folder, name, settings):
         record = json.loads((folder / f"{name}.json").read_text())
         self.name, self.summary, self.cpu = name, record["summary"], record["cpu_seconds"]
+        later = folder.parent / ENDS / f"{name}.json"  # the same layers, by a program that tells more
+        if later.exists():
+            self.summary = {**json.loads(later.read_text())["summary"], **self.summary}
         given = dict(s.split("=", 1) for s in settings)
         self.friction = float(given.get("material.friction", 0.5))
         self.grains = int(given.get("response.grains", 1))

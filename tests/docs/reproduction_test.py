@@ -1050,6 +1050,13 @@ def test_where_linearity_ends_and_what_settles_are_told_by_the_runs_that_know(tm
     assert limit.settlements([known, silent]).splitlines()[2:] == [
         "| 8.0 | 0.2 | 0.90 ± 0.05 | 0.90 ± 0.05 | 1.20 ± 0.05 | 1.20 ± 0.05 | 2.70 ± 0.10 |"]
     assert len(limit.ends([silent]).splitlines()) == 2
+    # A later run of the same layers adds what the first does not have.
+    (tmp_path / limit.ENDS).mkdir()
+    (tmp_path / limit.ENDS / "deep-8-mu-1.json").write_text(json.dumps(
+        {"summary": {"linearity.hundredth_changes": 5.0, "layer.depth_diameters": 99}}))
+    (tmp_path / "first").mkdir()
+    more = layers_under_loads(tmp_path / "first", "deep-8-mu-1", ["material.friction=1"])
+    assert (more.number("linearity.hundredth_changes"), more.depth) == (5.0, 10)
 
 
 def test_the_page_of_layers_of_growing_depth_has_the_tables_of_its_runs():
