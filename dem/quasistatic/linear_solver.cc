@@ -4,6 +4,7 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseLU>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <vector>
@@ -166,6 +167,21 @@ class IterativeSolver final : public LinearSolver {
 std::unique_ptr<LinearSolver> make_direct_solver() { return std::make_unique<DirectSolver>(); }
 std::unique_ptr<LinearSolver> make_iterative_solver() {
   return std::make_unique<IterativeSolver>();
+}
+
+void solve_anywhere(LinearSolver& solver, const LinearSolver::Vector& rhs,
+                    LinearSolver::Vector& x) {
+  solver.solve(rhs, x);
+  if (x.allFinite()) return;
+  LinearSolver::Vector other(rhs.size()), added;
+  for (Eigen::Index k = 0; k < other.size(); ++k) {
+    const auto number = static_cast<double>(k);
+    other[k] = std::cos(number * number);  // disordered
+  }
+  other *= rhs.norm() / other.norm();
+  solver.solve(other, added);
+  solver.solve(rhs + other, x);
+  x -= added;
 }
 
 }  // namespace grainfield::dem

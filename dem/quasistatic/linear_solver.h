@@ -26,6 +26,11 @@ std::unique_ptr<LinearSolver> make_direct_solver();
 /// each, which friction makes unsymmetric here and there.
 std::unique_ptr<LinearSolver> make_iterative_solver();
 
+/// The solver's x, also of a right side at which BiCGSTAB breaks down: such as are 0 nearly
+/// everywhere, a load on one grain. There one that is 0 nowhere is added, and its solution taken
+/// away again. Not finite where no x was found.
+void solve_anywhere(LinearSolver& solver, const LinearSolver::Vector& rhs, LinearSolver::Vector& x);
+
 /// Share of the right side that a solution by iteration may leave.
 inline constexpr double kLinearTolerance = 1e-4;
 

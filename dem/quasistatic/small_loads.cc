@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <tuple>
@@ -71,28 +70,12 @@ SmallLoads::SmallLoads(const Snapshot& start, const Materials& materials) : star
   start_ = network_->snapshot(start);
 }
 
-// BiCGSTAB breaks down at some right sides that are 0 nearly everywhere, such as a load on one
-// grain. There one that is 0 nowhere is added, and its solution taken away again.
-void SmallLoads::approximate(const Vector& rhs, Vector& x) {
-  solver_->solve(rhs, x);
-  if (x.allFinite()) return;
-  Vector other(rhs.size()), added;
-  for (Eigen::Index k = 0; k < other.size(); ++k) {
-    const auto number = static_cast<double>(k);
-    other[k] = std::cos(number * number);  // disordered
-  }
-  other *= rhs.norm() / other.norm();
-  solver_->solve(other, added);
-  solver_->solve(rhs + other, x);
-  x -= added;
-}
-
 SmallLoads::Vector SmallLoads::solve(const Vector& rhs, SmallResponse& out) {
   const double load = rhs.cwiseAbs().maxCoeff();
   Vector z = Vector::Zero(rhs.size()), left = rhs, step;
   out.left = 1;
   while (out.solves < kMostSolves && out.left > kSought) {
-    approximate(-left, step);
+    solve_anywhere(*solver_, -left, step);
     ++out.solves;
     if (!step.allFinite()) break;
     const Vector next = rhs + tangent_ * (z + step);

@@ -42,8 +42,6 @@ class SmallLoads {
   using Vector = ContactNetwork::Vector;
   /// z of this right side, T z = -rhs.
   Vector solve(const Vector& rhs, SmallResponse& out);
-  /// J x = rhs; not finite where no x was found.
-  void approximate(const Vector& rhs, Vector& x);
 
   Snapshot start_;
   std::unique_ptr<ContactNetwork> network_;

@@ -4,9 +4,10 @@
     docs/reproduction/limit.py [--write] [--picture PICTURE] [--states FOLDER]
 
 Reads the runs of the LISTS in states/boussinesq/ and states/boussinesq-space/ (runs/next.py computes them): the
-figures in NAME.json, and on the axis NAME.profiles.csv where it is kept. A misfit is the root of the squared
-distance of the grains' mean from a prediction less the variance of that mean, over the root of the squared
-prediction; where it is within its noise, "<" and the upper end of 95 % stand for it. "–" has not run.
+figures in NAME.json (those that it lacks in states/boussinesq-ends/NAME.json), and on the axis NAME.profiles.csv
+where it is kept. A misfit is the root of the squared distance of the grains' mean from a prediction less the
+variance of that mean, over the root of the squared prediction; where it is within its noise, "<" and the
+upper end of 95 % stand for it. "–" has not run.
 --write replaces the tables of the page that have the same heads. Needs gnuplot for the picture.
 """
 import argparse
@@ -29,6 +30,7 @@ from tables import line, put, table  # noqa: E402
 
 PAGE = HERE.parent / "cases" / "boussinesq-limit.md"
 LISTS = ("boussinesq", "boussinesq-space")
+ENDS = "boussinesq-ends"
 ROUGH = "rough"  # the base on which no contact slides
 HOMOGENEOUS, BY_DEPTH = f"homogeneous_{ROUGH}", f"by_depth_{ROUGH}"
 REGIONS = {"base": "on the base", "axis": "on the axis", "all": "of all profiles"}
@@ -44,6 +46,9 @@ class Run:
     def __init__(self, folder, name, settings):
         record = json.loads((folder / f"{name}.json").read_text())
         self.name, self.summary, self.cpu = name, record["summary"], record["cpu_seconds"]
+        later = folder.parent / ENDS / f"{name}.json"  # the same layers, by a program that tells more
+        if later.exists():
+            self.summary = {**json.loads(later.read_text())["summary"], **self.summary}
         given = dict(s.split("=", 1) for s in settings)
         self.friction = float(given.get("material.friction", 0.5))
         self.grains = int(given.get("response.grains", 1))
@@ -241,6 +246,40 @@ def linearity(runs):
     return table(line(head), rows)
 
 
+def with_error(run, key, digits):
+    """A figure over packings and its standard error."""
+    value, error = run.number(key), run.number(f"{key}.standard_error")
+    if not math.isfinite(value):
+        return "–"
+    return f"{value:.{digits}f}" + (f" ± {error:.{digits}f}" if math.isfinite(error) else "")
+
+
+def ends(runs):
+    """Where linear response ends, of the runs that tell."""
+    head = ["depth / d", "μ", "first contact slides or opens at (weights of a disk)", "first opens at",
+            "a hundredth have at", "the same over depth / d"]
+    rows = []
+    for run in usual(runs):
+        key = "linearity.hundredth_changes"
+        if math.isfinite(run.number(key)):
+            shares = [run.number(k) / run.depth for k in (key, f"{key}.standard_error")]
+            rows.append(of(run) + [with_error(run, f"linearity.first_{name}", 2) for name in ("changes", "opens")]
+                        + [with_error(run, key, 1), f"{shares[0]:.2f} ± {shares[1]:.2f}"])
+    return table(head, rows)
+
+
+def settlements(runs):
+    """Settlements over the predicted ones, of the runs that tell."""
+    head = ["depth / d", "μ", "surface, h/4 to h from the load: over one stiffness", "over stiffness by depth",
+            "below the load, h/4 to 3h/4: over one stiffness", "over stiffness by depth", "loaded disk: E_v u / F"]
+    rows = []
+    for run in usual(runs):
+        keys = [f"settlement.{model}.{place}" for place in ("surface", "axis") for model in (HOMOGENEOUS, BY_DEPTH)]
+        if math.isfinite(run.number(keys[0])):
+            rows.append(of(run) + [with_error(run, key, 2) for key in [*keys, "response.settlement"]])
+    return table(head, rows)
+
+
 def costs(runs):
     head = ["depth / d", "μ", "disks in a layer", "layers", "CPU min", "deposit and load",
             "rest, moduli, response (clock)", "finite elements (clock)", "memory (MB)"]
@@ -253,6 +292,8 @@ def costs(runs):
 
 
 TABLES = (misfits, bases, causes, linearity, costs)
+#: Tables of figures that not every run has: of none, there is no table.
+FURTHER = (ends, settlements)
 
 
 def draw_misfits(runs, picture):
@@ -303,6 +344,7 @@ def main():
     given = options.parse_args()
     runs = finished(given.states)
     made = [one(runs) for one in TABLES]
+    made += [new for new in (one(runs) for one in FURTHER) if new.count("\n") > 2]
     if given.picture:
         draw_misfits(runs, given.picture)
     if given.write:

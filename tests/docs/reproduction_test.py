@@ -1048,11 +1048,36 @@ def test_larger_ensembles_take_the_place_of_smaller_ones(tmp_path):
     assert [run.shape for run in runs][-3:] == ["disks", "pentagons", "spheres"]
 
 
+def test_where_linearity_ends_and_what_settles_are_told_by_the_runs_that_know(tmp_path):
+    known = layers_under_loads(tmp_path, "deep-8-mu-0.2", ["material.friction=0.2"], **{
+        "layer.depth_diameters": 8.0, "linearity.first_changes": 0.5, "linearity.first_changes.standard_error": 0.1,
+        "linearity.first_opens": 2.0, "linearity.first_opens.standard_error": 0.3,
+        "linearity.hundredth_changes": 4.0, "linearity.hundredth_changes.standard_error": 0.4,
+        "response.settlement": 2.7, "response.settlement.standard_error": 0.1,
+        **{f"settlement.{model}.{place}{end}": value for model in ("homogeneous_rough", "by_depth_rough")
+           for place, number in (("surface", 0.9), ("axis", 1.2)) for end, value in (("", number), (".standard_error", 0.05))}})
+    silent = layers_under_loads(tmp_path, "deep-8-mu-1", ["material.friction=1"])
+    assert limit.ends([known, silent]).splitlines()[2:] == [
+        "| 8.0 | 0.2 | 0.50 ± 0.10 | 2.00 ± 0.30 | 4.0 ± 0.4 | 0.50 ± 0.05 |"]
+    assert limit.settlements([known, silent]).splitlines()[2:] == [
+        "| 8.0 | 0.2 | 0.90 ± 0.05 | 0.90 ± 0.05 | 1.20 ± 0.05 | 1.20 ± 0.05 | 2.70 ± 0.10 |"]
+    assert len(limit.ends([silent]).splitlines()) == 2
+    # A later run of the same layers adds what the first does not have.
+    (tmp_path / limit.ENDS).mkdir()
+    (tmp_path / limit.ENDS / "deep-8-mu-1.json").write_text(json.dumps(
+        {"summary": {"linearity.hundredth_changes": 5.0, "layer.depth_diameters": 99}}))
+    (tmp_path / "first").mkdir()
+    more = layers_under_loads(tmp_path / "first", "deep-8-mu-1", ["material.friction=1"])
+    assert (more.number("linearity.hundredth_changes"), more.depth) == (5.0, 10)
+
+
 def test_the_page_of_layers_of_growing_depth_has_the_tables_of_its_runs():
     """Runs that ended after it was written may be missing."""
     runs = limit.finished(limit.HERE / "states")
     page = limit.PAGE.read_text()
-    for one in limit.TABLES:
+    for one in limit.TABLES + limit.FURTHER:
         made = one(runs).splitlines()
+        if one in limit.FURTHER and made[0] not in page:
+            continue
         table = page[page.index(made[0]):].partition("\n\n")[0].splitlines()
         assert len(table) > 2 and set(table) <= set(made), "docs/reproduction/limit.py --write"

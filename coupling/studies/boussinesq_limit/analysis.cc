@@ -14,6 +14,7 @@
 #include "coupling/run/averaging_setup.h"
 #include "coupling/run/ensemble.h"
 #include "coupling/studies/boussinesq_limit/responses.h"
+#include "coupling/studies/boussinesq_limit/settlement.h"
 #include "coupling/studies/boussinesq_limit/setup.h"
 #include "coupling/studies/point_load/probed_slabs.h"
 #include "coupling/studies/point_load/simulation.h"
@@ -32,6 +33,8 @@ constexpr std::array kRests{1e-9, 1e-8, 1e-7};
 // Finite elements are refined to this, far below the grains' noise: where shear is soft they need
 // many unknowns for more.
 constexpr const char* kFiniteElementTolerance = "1e-3";
+// Models whose settlement is compared: those of a layer on which no contact of the base slides.
+const std::string kSettledByOne = "homogeneous_rough", kSettledByDepth = "by_depth_rough";
 
 dem::Materials materials_of(const dem::MaterialSetup& m) {
   dem::Materials out;
@@ -43,15 +46,14 @@ dem::Materials materials_of(const dem::MaterialSetup& m) {
 
 dem::QuasistaticResult at_rest(const dem::Snapshot& before, const dem::Materials& materials) {
   dem::QuasistaticSettings how;
-  for (const double ratio : kRests) {
-    how.unbalanced_force_ratio = ratio;
+  for (std::size_t k = 0;; ++k) {
+    how.unbalanced_force_ratio = kRests[k];
     try {
       return dem::relax(before, materials, before.gravity, {}, how);
     } catch (const ComputationFailed&) {
-      if (ratio == kRests.back()) throw;
+      if (k + 1 == kRests.size()) throw;
     }
   }
-  return {};
 }
 
 struct RestingLayer {
@@ -99,7 +101,7 @@ class Analysis {
         load_places(layer.rest, layer.frame, response_.loads, response_.grains, response_.span);
     if (layer.places.empty())
       throw ComputationFailed("response.loads: the layer has no surface grain that touches others");
-    figures_["rest.unbalanced_force_ratio"].push_back(rest.unbalanced_force_ratio);
+    figures_["moduli.unbalanced_force_ratio"].push_back(rest.unbalanced_force_ratio);
     figures_["rest.contacts_changed"].push_back(rest.contacts_gained + rest.contacts_lost);
     double below = 0;
     for (const LoadPlace& place : layer.places) below += place.depth;
@@ -165,6 +167,7 @@ class Analysis {
       one.label = fmt::format("homogeneous_{}", base);
       one.settings["base"] = base;
       models.push_back(one);
+      if (one.label == kSettledByOne) settling_.emplace_back(one, homogeneous);
     }
     models.push_back(space ? of_constants("", "transverse_half_space")
                            : finite_elements("fe_elastic_half_space", homogeneous));
@@ -174,6 +177,9 @@ class Analysis {
       models.push_back(finite_elements("fe_elastic_layer", by_depth));
       models.back().label = fmt::format("by_depth_{}", base);
       models.back().settings["base"] = base;
+      // In space, where a solution takes minutes, only the stresses are compared.
+      if (models.back().label == kSettledByDepth && !space)
+        settling_.emplace_back(models.back(), by_depth);
     }
     models.push_back(finite_elements("fe_elastic_half_space", by_depth));
     models.back().label = "by_depth_half_space";
@@ -200,42 +206,34 @@ class Analysis {
     std::vector<double> depths;
     for (const double share : setup_.depths) depths.push_back(share * depth_);
     std::vector<std::vector<Ensemble>> lines(both.size(), std::vector<Ensemble>(depths.size() + 1));
-    const double unit = whole_.mean[SlabConstants::e_v] / force * (dim_ == 3 ? depth_ : 1);
-    std::string moved = "realization,place,at_over_h,displacement\n";
-    for (std::size_t r = 0; r < layers_.size(); ++r) {
-      const RestingLayer& layer = layers_[r];
-      const MeanResponse one = mean_response(layer.rest, materials_, layer.frame, layer.places,
-                                             force, depths, depth_, x, both);
-      for (std::size_t t = 0; t < both.size(); ++t) {
-        for (std::size_t d = 0; d <= depths.size(); ++d) lines[t][d].add(one.lines[t][d]);
-      }
-      figures_["response.places"].push_back(one.places);
-      figures_["response.settlement"].push_back(one.settlement * unit);
-      figures_["response.out_of_balance"].push_back(one.out_of_balance);
-      figures_["response.base_over_load"].push_back(one.base_share);
-      for (Eigen::Index k = 0; k < x.size(); ++k) {
-        if (std::isfinite(one.surface[k]))
-          moved +=
-              fmt::format("{},surface,{:.5g},{:.6g}\n", r, x[k] / depth_, one.surface[k] * unit);
-      }
-      for (Eigen::Index k = 0; k < one.axis.size(); ++k) {
-        const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(one.axis.size());
-        if (std::isfinite(one.axis[k]))
-          moved += fmt::format("{},axis,{:.5g},{:.6g}\n", r, at, one.axis[k] * unit);
-      }
-    }
-    out_.texts.emplace_back("displacements.csv", moved);
-    add_figures(out_.summary, figures_);
-    out_.summary["layer.depth"] = depth_;
-    out_.summary["layer.depth_diameters"] = depth_ / diameter_;
-    out_.summary["layer.mean_diameter"] = diameter_;
-    out_.summary["layer.half_width_depths"] = half_ / depth_;
     Observations seen;
     seen.specimen = Specimen::layer;
     seen.realizations = static_cast<int>(layers_.size());
     seen.scale = scale_of_load(force, depth_, dim_);
     const double least = *std::min_element(depths.begin(), depths.end());
     seen.told = {force, depth_, dim_, least, "", {}};
+    const auto levels = static_cast<Eigen::Index>(std::max(1.0, std::floor(depth_ / diameter_)));
+    const double first = 0.5 * depth_ / static_cast<double>(levels);
+    const SettlementPlaces places{x, Eigen::VectorXd::LinSpaced(levels, first, depth_ - first),
+                                  diameter_};
+    std::vector<MeanResponse> responses;
+    for (const RestingLayer& layer : layers_) {
+      const MeanResponse& one = responses.emplace_back(mean_response(
+          layer.rest, materials_, layer.frame, layer.places, force, depths, depth_, places, both));
+      for (std::size_t t = 0; t < both.size(); ++t) {
+        for (std::size_t d = 0; d <= depths.size(); ++d) lines[t][d].add(one.lines[t][d]);
+      }
+      figures_["response.places"].push_back(one.places);
+      figures_["response.out_of_balance"].push_back(one.out_of_balance);
+      figures_["response.base_over_load"].push_back(one.base_share);
+      add_end(one.end, mean_weight(layer.rest));
+    }
+    compare_settlements(responses, places, seen.told);
+    add_figures(out_.summary, figures_);
+    out_.summary["layer.depth"] = depth_;
+    out_.summary["layer.depth_diameters"] = depth_ / diameter_;
+    out_.summary["layer.mean_diameter"] = diameter_;
+    out_.summary["layer.half_width_depths"] = half_ / depth_;
     const std::vector<std::string> names{"w_diameters", "w_depths"};
     for (std::size_t t = 0; t < both.size(); ++t) {
       for (std::size_t d = 0; d <= depths.size(); ++d) {
@@ -253,6 +251,56 @@ class Analysis {
     return seen;
   }
 
+  void add_end(const LinearEnd& end, double weight) {
+    const auto add = [&](const char* key, double load) {
+      if (std::isfinite(load)) figures_[key].push_back(load / weight);
+    };
+    add("linearity.first_opens", end.opening);
+    add("linearity.first_slides", end.sliding);
+    add("linearity.first_changes", end.first);
+    add("linearity.hundredth_changes", end.hundredth);
+  }
+
+  // Of the grains and of the models, which know their moduli before.
+  void compare_settlements(const std::vector<MeanResponse>& layers, const SettlementPlaces& places,
+                           const RunFacts& facts) {
+    const double unit = whole_.mean[SlabConstants::e_v] / facts.force * (dim_ == 3 ? depth_ : 1);
+    std::string head = "realization,place,at_over_h,displacement";
+    std::vector<Settlements> models;
+    for (const auto& [model, table] : settling_) {
+      head += "," + model.label;
+      models.push_back(
+          predicted_settlements(model, facts, continuum::read_moduli_by_depth(table), places));
+    }
+    std::string rows;
+    for (std::size_t r = 0; r < layers.size(); ++r) {
+      const Settlements& grains = layers[r].settled;
+      const auto write = [&](const char* place, const Eigen::VectorXd& at,
+                             Eigen::VectorXd Settlements::*part) {
+        for (Eigen::Index k = 0; k < at.size(); ++k) {
+          if (!std::isfinite((grains.*part)[k])) continue;
+          rows += fmt::format("{},{},{:.5g},{:.6g}", r, place, at[k] / depth_,
+                              (grains.*part)[k] * unit);
+          for (const Settlements& model : models)
+            rows += fmt::format(",{:.6g}", (model.*part)[k] * unit);
+          rows += '\n';
+        }
+      };
+      write("surface", places.surface, &Settlements::surface);
+      write("axis", places.axis, &Settlements::axis);
+      figures_["response.settlement"].push_back(layers[r].settlement * unit);
+      for (std::size_t m = 0; m < models.size(); ++m) {
+        const std::string key = "settlement." + settling_[m].first.label;
+        const auto add = [&](const char* name, const MeanSettlement& mean) {
+          if (std::isfinite(mean.of)) figures_[key + name].push_back(mean.of / mean.other);
+        };
+        add(".surface", mean_on_surface(grains, models[m], places, depth_));
+        add(".axis", mean_on_axis(grains, models[m], places, depth_));
+      }
+    }
+    out_.texts.emplace_back("displacements.csv", head + "\n" + rows);
+  }
+
   StudyResult& out_;
   const Case& value_;
   const ResponseSetup& response_;
@@ -264,6 +312,7 @@ class Analysis {
   std::vector<RestingLayer> layers_;
   std::vector<std::vector<SlabModuli>> slabs_, wholes_;
   SlabModuli whole_;
+  std::vector<std::pair<ModelChoice, std::string>> settling_;  // with the table of its moduli
   double depth_ = 0, diameter_ = 0, half_ = std::numeric_limits<double>::infinity();
   FigureSamples figures_;
 };

@@ -11,6 +11,7 @@
 #include "coupling/averaging/base_space.h"
 #include "coupling/averaging/ensemble.h"
 #include "coupling/averaging/rings.h"
+#include "dem/quasistatic/linear_range.h"
 #include "dem/quasistatic/small_loads.h"
 #include "dem/snapshot/contact_changes.h"
 #include "dem/snapshot/images.h"
@@ -20,6 +21,8 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRingShare = 1.0 / 3;  // of the kernel's width: distance of places on a ring
+
+constexpr double kHundredth = 0.01;
 
 // Seen from above, by the nearest image.
 Eigen::Vector2d way_above(const dem::Snapshot& s, const dem::Vec3& from, const dem::Vec3& to) {
@@ -73,6 +76,18 @@ class Mean {
  private:
   Ensemble all_;
 };
+
+LinearEnd median_of(const std::vector<LinearEnd>& ends) {
+  const auto of = [&](double LinearEnd::*member) {
+    std::vector<double> all;
+    for (const LinearEnd& e : ends) all.push_back(e.*member);
+    std::ranges::sort(all);
+    const std::size_t n = all.size();
+    return n == 0 ? kUnknown : n % 2 == 1 ? all[n / 2] : 0.5 * (all[n / 2 - 1] + all[n / 2]);
+  };
+  return {of(&LinearEnd::opening), of(&LinearEnd::sliding), of(&LinearEnd::first),
+          of(&LinearEnd::hundredth)};
+}
 
 // The means of values by the nearest of places that ascend evenly, nan where there is none.
 class ByPlace {
@@ -143,6 +158,17 @@ std::vector<LoadPlace> load_places(const dem::Snapshot& layer, const LayerFrame&
   return out;
 }
 
+double mean_weight(const dem::Snapshot& s) {
+  double mass = 0;
+  int free = 0;
+  for (const dem::Grain& g : s.grains) {
+    if (g.fixed) continue;
+    mass += g.mass;
+    ++free;
+  }
+  return mass / free * s.gravity.norm();
+}
+
 double reach_of(const std::vector<LoadPlace>& places, const LayerFrame& frame, int dim) {
   if (dim == 3) return 0.5 * std::min(frame.right - frame.left, frame.back - frame.front);
   double out = std::numeric_limits<double>::infinity();
@@ -153,20 +179,23 @@ double reach_of(const std::vector<LoadPlace>& places, const LayerFrame& frame, i
 MeanResponse mean_response(const dem::Snapshot& rest, const dem::Materials& materials,
                            const LayerFrame& layer, const std::vector<LoadPlace>& places,
                            double force, const std::vector<double>& depths, double depth,
-                           const Eigen::VectorXd& x, const std::vector<SeenThrough>& through) {
+                           const SettlementPlaces& settled_at,
+                           const std::vector<SeenThrough>& through) {
+  const Eigen::VectorXd& x = settled_at.surface;
   const int dim = rest.dim, up = dim - 1;
   dem::SmallLoads loads(rest, materials);
-  const double diameter = mean_diameter(rest);
   const std::vector<std::size_t> surface = surface_grains(rest, layer);
   MeanResponse out;
   std::vector<std::vector<Mean>> sums(through.size(), std::vector<Mean>(depths.size() + 1));
   ByPlace settled(x);
-  const auto levels = static_cast<Eigen::Index>(std::max(1.0, std::floor(depth / diameter)));
-  ByPlace below(Eigen::VectorXd::LinSpaced(levels, 0.5 * depth / static_cast<double>(levels),
-                                           depth * (1 - 0.5 / static_cast<double>(levels))));
+  ByPlace below(settled_at.axis);
+  std::vector<LinearEnd> ends;
   for (const LoadPlace& place : places) {
     const dem::Vec3 each = -force / static_cast<double>(place.grains.size()) * dem::Vec3::Unit(up);
     const dem::SmallResponse r = loads.response(place.grains, each);
+    const dem::LinearRange range = dem::linear_range(loads.start(), r.change);
+    ends.push_back({force * range.opens, force * range.slides, force * range.changed(0),
+                    force * range.changed(kHundredth)});
     LayerFrame frame = layer;
     frame.load_x = place.x;
     frame.load_y = place.y;
@@ -208,7 +237,7 @@ MeanResponse mean_response(const dem::Snapshot& rest, const dem::Materials& mate
       const Eigen::Vector2d aside = way_above(rest, middle, g.position);
       if (dem::is_loaded(r.change, g.id))
         out.settlement -= r.moved[k][up] / static_cast<double>(place.grains.size());
-      else if (!g.fixed && aside.norm() < diameter)
+      else if (!g.fixed && aside.norm() < settled_at.aside)
         below.add(layer.surface - g.position[up], -r.moved[k][up]);
     }
     for (const std::size_t k : surface) {
@@ -229,8 +258,8 @@ MeanResponse mean_response(const dem::Snapshot& rest, const dem::Materials& mate
   const auto count = static_cast<double>(std::max(out.places, 1));
   out.settlement /= count;
   out.base_share /= count;
-  out.surface = settled.mean();
-  out.axis = below.mean();
+  out.settled = {settled.mean(), below.mean()};
+  out.end = median_of(ends);
   for (const std::vector<Mean>& one : sums) {
     std::vector<Field>& lines = out.lines.emplace_back();
     if (out.places == 0) continue;

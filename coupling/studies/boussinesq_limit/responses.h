@@ -10,6 +10,7 @@
 #include "coupling/averaging/layer.h"
 #include "coupling/averaging/options.h"
 #include "coupling/base/field.h"
+#include "coupling/studies/boussinesq_limit/settlement.h"
 #include "dem/laws/materials.h"
 #include "dem/snapshot/snapshot.h"
 
@@ -37,24 +38,35 @@ struct SeenThrough {
   std::shared_ptr<const Kernel> kernel;
 };
 
+/// Where linear response of a place ends, N, by its own numbers (dem/quasistatic/linear_range.h):
+/// loads at which the first contact is open, begins to slide, does either, and at which a hundredth
+/// of all contacts have; infinite: none.
+struct LinearEnd {
+  double opening = 0, sliding = 0, first = 0, hundredth = 0;
+};
+
 struct MeanResponse {
   /// For each averaging the stress along a line at each depth, and on the base behind them; models'
   /// frame; in space means over the angle.
   std::vector<std::vector<Field>> lines;
   double settlement = 0;  ///< of the loaded grains, m, mean
-  /// By distance from the load, at the places of `lines`: downwards, of the grains of the surface;
-  /// and at depths below it, nan where no grain is within a diameter.
-  Eigen::VectorXd surface, axis;
+  /// At the places given: of the grains of the surface, and of those beside the axis; downwards.
+  Settlements settled;
+  LinearEnd end;              ///< medians over the places
   double out_of_balance = 0;  ///< largest share of a load that the base and the sides do not carry
   double base_share = 0;      ///< that the base carries, mean
   int places = 0;
 };
 
-/// `depths`: of the lines, m below the surface; `x`: from the load, in space radii from 0. `depth`:
-/// of the models, m. `force`: in all, N. Throws as SmallLoads.
+/// `depths`: of the lines, m below the surface; `at`: their places are those of the surface, from
+/// the load, in space radii from 0. `depth`: of the models, m. `force`: in all, N. Throws as
+/// SmallLoads.
 MeanResponse mean_response(const dem::Snapshot& rest, const dem::Materials& materials,
                            const LayerFrame& frame, const std::vector<LoadPlace>& places,
                            double force, const std::vector<double>& depths, double depth,
-                           const Eigen::VectorXd& x, const std::vector<SeenThrough>& through);
+                           const SettlementPlaces& at, const std::vector<SeenThrough>& through);
+
+/// Of the free grains, N.
+double mean_weight(const dem::Snapshot& snapshot);
 
 }  // namespace grainfield::coupling

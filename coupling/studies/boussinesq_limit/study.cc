@@ -11,6 +11,7 @@
 #include "coupling/run/grain_keys.h"
 #include "coupling/studies/boussinesq_limit/analysis.h"
 #include "coupling/studies/boussinesq_limit/limits.h"
+#include "coupling/studies/boussinesq_limit/responses.h"
 #include "coupling/studies/boussinesq_limit/setup.h"
 #include "coupling/studies/point_load/finished_layers.h"
 #include "coupling/studies/point_load/keys.h"
@@ -31,14 +32,7 @@ std::optional<double> share_of(const Realization& one, int dem::ContactChanges::
 std::optional<double> weights_of(const Realization& one) {
   const dem::Snapshot *before = one.find("unloaded"), *after = one.find("loaded");
   if (before == nullptr || after == nullptr) return std::nullopt;
-  double mass = 0;
-  int free = 0;
-  for (const dem::Grain& g : before->grains) {
-    if (g.fixed) continue;
-    mass += g.mass;
-    ++free;
-  }
-  return dem::total_applied_force(*after).norm() / (mass / free * before->gravity.norm());
+  return dem::total_applied_force(*after).norm() / mean_weight(*before);
 }
 
 // A layer that an earlier run left, whatever load it carried.
@@ -90,11 +84,23 @@ std::vector<SummaryKey> limit_figures() {
       {"moduli.nonlinear_share", "-",
        "even part of the stress changes by the strains over the odd"},
       {"moduli.contacts_changed", "-", "contacts that are new, gone or begin to slide by a strain"},
+      {"moduli.unbalanced_force_ratio", "-",
+       "of the layers that moduli and responses are measured on: mean resultant over mean contact "
+       "force that Newton's method reached"},
       {"rest.contacts_changed", "-", "contacts gained and lost by Newton's method before it"},
       {"response.places", "-", "places of the load on a layer"},
       {"response.load_depth", "m", "mean depth of the loaded grains' centres below the surface"},
       {"response.settlement", "-",
        "mean displacement of the loaded grains, downwards, times E_v/F, in space times E_v h/F"},
+      {"settlement.*.surface", "-",
+       "mean settlement of the grains' surface, h/4 to h from the load, over that of MODEL"},
+      {"settlement.*.axis", "-", "the same below the load, h/4 to 3h/4 deep"},
+      {"linearity.first_opens", "-",
+       "load over a grain's weight at which the first contact is open, by the linear response "
+       "alone: median over the places"},
+      {"linearity.first_slides", "-", "at which the first contact begins to slide"},
+      {"linearity.first_changes", "-", "at which the first contact does either"},
+      {"linearity.hundredth_changes", "-", "at which a hundredth of the layer's contacts have"},
       {"response.out_of_balance", "-", "largest share of a load that base and sides do not carry"},
       {"response.base_over_load", "-", "share of the load that the base carries"},
       {"layer.depth_diameters", "-", "the same over the grains' mean diameter", "depth / d"},
