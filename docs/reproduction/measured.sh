@@ -166,6 +166,13 @@ strain mono_rough_3 rough_3 0
 strain mono_rough_300 rough_300 0
 strain mono_rough_3-varied rough_3_varied {0..7}
 
+# Polygons and the piston: layers of runs/roul-geometry.txt.
+layers=$here/states/roul-geometry
+for one in disks-piston disks-loose disks-loose-piston disks-slow corners-24 corners-24-piston corners-48; do
+  layer point-load-mono mono-$one $one
+  layer point-load-friction friction_0.6-$one $one
+done
+
 # Tails of P(n): layers of runs/tails.txt, forces by the overlap's area and linear springs.
 tails() { # FILE MEMBER
   [ -e "$here/states/tails/$1.h5.xz" ] || return 0
