@@ -168,7 +168,13 @@ strain mono_rough_3-varied rough_3_varied {0..7}
 
 # Polygons and the piston: layers of runs/roul-geometry.txt.
 layers=$here/states/roul-geometry
-for one in disks-piston disks-loose disks-loose-piston disks-slow corners-24 corners-24-piston corners-48; do
+layer point-load-mono mono-piston piston_300
+for mu in 0.3 0.6 0.9; do
+  layer point-load-friction friction_$mu-piston piston_$mu
+  layer point-load-friction friction_$mu-disks-piston piston_varied_$mu
+done
+layer point-load-mono mono-disks-piston piston_varied_300
+for one in disks-loose disks-loose-piston disks-slow corners-24 corners-24-piston corners-48; do
   layer point-load-mono mono-$one $one
   layer point-load-friction friction_0.6-$one $one
 done
