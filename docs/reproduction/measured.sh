@@ -169,6 +169,7 @@ strain mono_rough_3-varied rough_3_varied {0..7}
 # Polygons and the piston: layers of runs/roul-geometry.txt.
 layers=$here/states/roul-geometry
 layer point-load-mono mono-piston piston_300
+layer point-load-friction friction_0.6-piston-slow piston_slow_0.6
 for mu in 0.3 0.6 0.9; do
   layer point-load-friction friction_$mu-piston piston_$mu
   layer point-load-friction friction_$mu-disks-piston piston_varied_$mu
