@@ -185,7 +185,7 @@ void check_layer_3d(const PackingSetup& p) {
   if (!(smallest_radius(p) > 0)) {
     refuse("packing.radius", fmt::format("{:g}", smallest_radius(p)), "above 0");
   }
-  if (p.shape == "irregular")
+  if (p.shape == "irregular" || p.shape == "regular")
     refuse("packing.shape", p.shape, "disk | superellipsoid with packing.dim = 3");
   if (p.shape == "superellipsoid") {
     if (is_lattice(p))

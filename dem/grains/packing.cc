@@ -7,19 +7,11 @@
 
 #include "dem/grains/layer_3d.h"
 #include "dem/grains/placed.h"
+#include "dem/shapes/pair_memory.h"
 #include "dem/shared/refuse.h"
 
 namespace grainfield::dem {
 namespace {
-
-NewGrain grain_at(double x, double y, double radius, double density) {
-  NewGrain g;
-  g.x = x;
-  g.y = y;
-  g.radius = radius;
-  g.density = density;
-  return g;
-}
 
 // Spacing of a lattice along a row and from row to row, in diameters.
 double along_row(const PackingSetup& p) {
@@ -59,6 +51,10 @@ ShapeSetup pentagon(const PackingSetup& p) {
 
 void check_packing(const PackingSetup& p) {
   if (p.dim == 3) return check_layer_3d(p);
+  if (p.shape == "regular") {
+    require(p.corners >= 3 && p.corners <= kMostCorners, "packing.corners", p.corners,
+            fmt::format("3 to {}", kMostCorners));
+  }
   if (p.kind == "layered") {
     require(p.width >= 4 * largest_radius(p), "packing.width", p.width,
             "at least two grain diameters");
@@ -67,10 +63,10 @@ void check_packing(const PackingSetup& p) {
     require(p.drop_height >= 0, "packing.drop_height", p.drop_height, "0 or more");
     if (p.shape == "irregular") require(p.side > 0, "packing.side", p.side, "above 0");
   } else {
-    if (p.shape != "disk") {
+    if (p.shape != "disk" && p.shape != "regular") {
       throw std::invalid_argument(fmt::format(
-          "packing.shape: found {}, allowed: disk, because packing.kind = {} is a lattice", p.shape,
-          p.kind));
+          "packing.shape: found {}, allowed: disk, regular, because packing.kind = {} is a lattice",
+          p.shape, p.kind));
     }
     require(p.columns >= 2, "packing.columns", p.columns, "2 or more");
     require(p.rows >= 1, "packing.rows", p.rows, "1 or more");
@@ -145,13 +141,23 @@ void add_row(const PackingSetup& p, bool shifted, double y, double density, bool
   const int count = shifted ? p.columns - 1 : p.columns;
   for (int k = 0; k < count; ++k) {
     const double radius = fixed ? p.radius : draw_radius(p, random);
-    NewGrain g = grain_at((k - 0.5 * (count - 1)) * along, y, radius, density);
+    NewGrain g = round_grain(p, radius, random).at((k - 0.5 * (count - 1)) * along, y, density);
     g.fixed = fixed;
     grains.push_back(g);
   }
 }
 
 }  // namespace
+
+ShapedGrain round_grain(const PackingSetup& p, double radius, Random& random) {
+  if (p.shape != "regular") return disk_grain(radius);
+  ShapeSetup s;
+  s.kind = "regular";
+  s.radius = radius;
+  s.polydispersity = 0;
+  s.corners_min = s.corners_max = p.corners;
+  return draw_grain(s, random);
+}
 
 GrainSupply::GrainSupply(const PackingSetup& packing, Random& random, double most)
     : packing_(packing) {
@@ -170,8 +176,9 @@ std::vector<ShapedGrain> GrainSupply::fill(double width, Random& random) {
           "the layer does not reach packing.depth = {:g} m with {} grains; lower packing.depth",
           packing_.depth, taken_));
     }
-    const ShapedGrain next =
-        draws_pentagons(packing_) ? drawn_[taken_] : disk_grain(draw_radius(packing_, random));
+    const ShapedGrain next = draws_pentagons(packing_)
+                                 ? drawn_[taken_]
+                                 : round_grain(packing_, draw_radius(packing_, random), random);
     // Rounding must not cost a row its last grain.
     if (2 * next.radius > slack * (1 + 1e-9)) return out;
     ++taken_;
@@ -182,6 +189,11 @@ std::vector<ShapedGrain> GrainSupply::fill(double width, Random& random) {
 
 GrainExtremes GrainSupply::extremes(double density) const {
   if (!drawn_.empty()) return extremes_of(drawn_, density);
+  if (packing_.shape == "regular") {
+    // All are alike but for their size.
+    Random any(0);
+    return extremes_of({round_grain(packing_, smallest_radius(packing_), any)}, density);
+  }
   GrainExtremes e;
   e.least_mass = density * disk_grain(smallest_radius(packing_)).area;
   return e;

@@ -33,8 +33,10 @@ struct PackingSetup {
   double drop_height = 0.008;      ///< m above the surface from which a row is dropped
   std::string floor = "smooth";    ///< smooth (flat wall with friction) | rough (fixed grains)
   double jitter = 0;               ///< lattices: relative spread of radii, uniform +- (0 = perfect)
-  std::string shape = "disk";      ///< layered: disk | irregular (pentagons; `sizes` is not used);
+  std::string shape = "disk";      ///< disk | regular (polygons) | irregular (layered: pentagons;
+                                   ///< `sizes` is not used);
                                    ///< 3D: disk (spheres) | superellipsoid (random), in `sizes`
+  int corners = 24;                ///< regular: on the circle of the radius
   double side = 0.009;             ///< m; irregular: mean length of a side (Roul 5.1)
   std::string sides = "periodic";  ///< 3D: periodic | walls
   std::string stacking = "fcc";    ///< 3D, close_packed: fcc (ABC) | hcp (AB)
@@ -46,7 +48,7 @@ struct PackingSetup {
   auto members() const {
     return std::tie(dim, kind, sizes, radius, radius_small, fraction_small, radius_min, radius_max,
                     columns, rows, spacing, width, depth, drop_height, floor, jitter, shape, side,
-                    sides, stacking, axis_min, axis_max, exponent_min, exponent_max);
+                    sides, stacking, axis_min, axis_max, exponent_min, exponent_max, corners);
   }
 };
 
@@ -75,7 +77,12 @@ double layer_width(const PackingSetup& packing);
 /// Floor, left and right wall with their friction.
 std::vector<Wall> layer_walls(const PackingSetup& packing, const MaterialSetup& material);
 
-/// The grains of a packing in the order they are used. Disks are drawn when they are asked for.
+/// A grain of this radius: a disk, or a regular polygon with its corners on that circle, turned at
+/// random.
+ShapedGrain round_grain(const PackingSetup& packing, double radius, Random& random);
+
+/// The grains of a packing in the order they are used. Disks and regular polygons are drawn when
+/// they are asked for.
 /// Pentagons are drawn beforehand, more than the layer can hold, so that the time step can be
 /// chosen for exactly these.
 class GrainSupply {
@@ -104,7 +111,7 @@ class GrainSupply {
 std::vector<NewGrain> floor_grains(const PackingSetup& packing, GrainSupply& supply, double density,
                                    Random& random);
 
-/// All grains of a lattice, touching and without overlap.
+/// All grains of a lattice, touching and without overlap (regular polygons: their circles).
 /// triangular: rows offset by half a diameter, six neighbours; odd rows have one grain less.
 /// sqrt3 (Roul 5.4): spacing sqrt(3) d in a row, rows offset by half of it and d/2 apart, so that a
 /// grain touches four others at +-30 degrees from the horizontal and none in its row. At exactly

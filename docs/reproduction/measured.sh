@@ -166,6 +166,20 @@ strain mono_rough_3 rough_3 0
 strain mono_rough_300 rough_300 0
 strain mono_rough_3-varied rough_3_varied {0..7}
 
+# Polygons and the piston: layers of runs/roul-geometry.txt.
+layers=$here/states/roul-geometry
+layer point-load-mono mono-piston piston_300
+layer point-load-friction friction_0.6-piston-slow piston_slow_0.6
+for mu in 0.3 0.6 0.9; do
+  layer point-load-friction friction_$mu-piston piston_$mu
+  layer point-load-friction friction_$mu-disks-piston piston_varied_$mu
+done
+layer point-load-mono mono-disks-piston piston_varied_300
+for one in disks-loose disks-loose-piston disks-slow corners-24 corners-24-piston corners-48; do
+  layer point-load-mono mono-$one $one
+  layer point-load-friction friction_0.6-$one $one
+done
+
 # Tails of P(n): layers of runs/tails.txt, forces by the overlap's area and linear springs.
 tails() { # FILE MEMBER
   [ -e "$here/states/tails/$1.h5.xz" ] || return 0

@@ -30,6 +30,8 @@ std::vector<SummaryKey> simulated() {
       {"load.force", "N", "applied force F"},
       {"load.force_over_weight", "-", "3D: F over the mean weight of a grain"},
       {"load.grains", "-", "3D: grains that share it"},
+      {"load.time", "s",
+       "load.control = speed: from the piston's touch until the grain resists with F"},
       {"load.x", "m", "abscissa of the loaded grain, packing's axes"},
       {"load.y", "m", "height of the loaded grain, packing's axes; 3D: its other abscissa"},
       {"load.z", "m", "3D: its height"},

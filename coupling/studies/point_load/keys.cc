@@ -78,12 +78,17 @@ void declare_packing_keys(SectionKeys s) {
            "height above the surface from which a row falls; higher packs denser",
            "Roul table 2 (line source)");
   s.only("packing.kind", {"layered"});
-  s.word("shape", IN(packing.shape), {"disk", "irregular", "superellipsoid"},
-         "disks, in space spheres; irregular pentagons (sizes and radii are not used); or "
-         "superellipsoids, whose semi-axes are over a radius drawn as packing.sizes says",
+  s.word("shape", IN(packing.shape), {"disk", "regular", "irregular", "superellipsoid"},
+         "disks, in space spheres; regular polygons, turned at random; irregular pentagons, in "
+         "dropped rows (sizes and radii are not used); or superellipsoids, whose semi-axes are "
+         "over a radius drawn as packing.sizes says",
          "Roul 5.1");
-  s.words_of_dimensions({"irregular"}, {"superellipsoid"});
-  s.only("packing.kind", {"layered", "random"});
+  s.words_of_dimensions({"regular", "irregular"}, {"superellipsoid"});
+  s.only("packing.kind", {"layered", "random", "triangular", "sqrt3"});
+  s.number("corners", "-", IN(packing.corners), {3, 64},
+           "corners of regular polygons, on the circle of the radius; more is rounder, and slower",
+           "Roul 5.1");
+  s.only("packing.shape", {"regular"});
   declare_superellipsoid_keys(s, "packing.shape",
                               {IN(packing.axis_min), IN(packing.axis_max), IN(packing.exponent_min),
                                IN(packing.exponent_max)});
@@ -114,9 +119,20 @@ void declare_load_keys(SectionKeys s) {
   s.number("unbalanced_force_ratio", "-", IN(load.unbalanced_force_ratio), kRatioOfForces,
            "mean resultant over mean contact force that Newton's method must reach");
   s.only("load.method", {"newton"});
+  s.word("control", IN(load.control), {"force", "speed"},
+         "the force rises along a smooth ramp; or a piston comes down on the grain at load.speed "
+         "until it resists with load.force, which then stays (piston.h: the piston is as stiff as "
+         "material.young or normal_stiffness)",
+         "Roul 5.1");
+  s.words_of_dimensions({"speed"}, {});
+  s.only("load.method", {"damped"});
+  s.number("speed", "m/s", IN(load.speed), {1e-6, 100},
+           "of the piston; slower is closer to quasi-static", kRoul);
+  s.only("load.control", {"speed"});
   s.number("ramp_time", "s", IN(load.ramp_time), kTime,
            "from no force to the full one; longer is closer to quasi-static", "Roul 5.2");
   s.only("load.method", {"damped"});
+  s.only("load.control", {"force"});
   s.number(
       "position", "-", IN(load.position), {0, 1},
       "share of the width: the top grain nearest to it carries the force, in space the highest "

@@ -1,4 +1,4 @@
-// Layers of disks and pentagons.
+// Layers of disks and polygons.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -61,6 +61,12 @@ void Layer<2>::check(const Setup& s) {
   check_packing(s.packing);
   check_method("load.rest", s.load.rest, s.material, s.motion);
   check_method("load.method", s.load.method, s.material, s.motion);
+  if (s.load.control == "speed" && s.load.method == "newton") {
+    throw std::invalid_argument(
+        "load.control: found \"speed\" with load.method = newton, allowed: \"force\" (a piston "
+        "moves "
+        "in time); or set load.method = damped");
+  }
   grains_of(s.packing);
 }
 
@@ -84,7 +90,7 @@ Outlook Layer<2>::outlook(const Setup& s, const EngineSettings& settings) {
   out.take_step(settings);
   out.grains = grains_of(p);
   if (p.floor == "rough") out.fixed = std::floor(0.5 * layer_width(p) / radius);
-  out.bytes = (out.grains + out.fixed) * (draws_pentagons(p) ? kBytesOfPolygon : kBytesOfDisk);
+  out.bytes = (out.grains + out.fixed) * (p.shape != "disk" ? kBytesOfPolygon : kBytesOfDisk);
   out.bytes_key = p.kind == "layered"  ? "packing.width"
                   : p.rows > p.columns ? "packing.rows"
                                        : "packing.columns";
@@ -93,7 +99,8 @@ Outlook Layer<2>::outlook(const Setup& s, const EngineSettings& settings) {
     times.add(p.drop_height > p.depth ? "packing.drop_height" : "packing.depth",
               p.depth / (2 * radius) * row_time(s, radius));
   }
-  if (s.load.method == "damped") times.add("load.ramp_time", s.load.ramp_time);
+  if (s.load.method == "damped" && s.load.control == "force")
+    times.add("load.ramp_time", s.load.ramp_time);
   times.put_into(out);
   return out;
 }

@@ -42,6 +42,12 @@ void Layer<3>::check(const Setup& s) {
   const PackingSetup& p = s.packing;
   check_packing(p);
   check_spheres(p);
+  if (s.load.control == "speed") {
+    throw std::invalid_argument(
+        "load.control: found \"speed\" with packing.dim = 3, allowed: \"force\" (the piston "
+        "presses "
+        "grains in the plane)");
+  }
   const bool angular = is_angular(p);
   for (const auto& [key, method] :
        {std::pair{"load.rest", s.load.rest}, {"load.method", s.load.method}}) {

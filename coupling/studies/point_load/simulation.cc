@@ -10,8 +10,10 @@
 #include "coupling/studies/point_load/layer_figures.h"
 #include "coupling/studies/point_load/layer_probe.h"
 #include "coupling/studies/point_load/load_by_newton.h"
+#include "coupling/studies/point_load/piston.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/run/phased_run.h"
+#include "dem/snapshot/added_forces_mark.h"
 #include "dem/snapshot/images.h"
 
 namespace grainfield::dem {
@@ -62,7 +64,7 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
   PointLoadRun(const PointLoadSetup& setup, std::uint64_t seed, int threads)
       : Base(setup, seed, phases_of<D>(setup)), layer_(setup, seed) {
     Base::take_settings(layer_.grains(), threads);
-    if (!by_newton()) {
+    if (!by_newton() && !by_piston()) {
       check_countable("load.ramp_time", setup_.load.ramp_time, settings_.time_step);
     }
     engine_ = empty_engine();
@@ -90,6 +92,7 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
                       D == 2 ? sides[0] : sides[0] * sides[1], f);
     f["load.force"] = force_of_load(setup_);
     Layer<D>::add_figures(setup_, *loaded_, f);
+    if (by_piston()) f["load.time"] = stroke_.end - stroke_.start;
     add_reached("load", reached_, f);
     if (setup_.load.rest == "newton") f["rest.by_newton"] = finish_ == Finish::done ? 1 : 0;
     add_reached("rest", rested_, f);
@@ -99,10 +102,12 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
 
  private:
   bool by_newton() const { return setup_.load.method == "newton"; }
+  bool by_piston() const { return setup_.load.control == "speed"; }
 
   std::unique_ptr<Engine> empty_engine() const override {
     std::unique_ptr<Engine> engine = make_engine(settings_);
     for (const Wall& wall : Layer<D>::walls(setup_)) engine->add_wall(wall);
+    if (piston_) added_forces(*engine).add_force(piston_);
     return engine;
   }
 
@@ -138,7 +143,9 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
         loaded_ = take_snapshot("loaded");
         return phases_.enter(Is::done);
       case Is::load:
-        if (Base::in_phase() >= setup_.load.ramp_time) Base::enter(Is::hold);
+        if (by_piston() ? presses() : Base::in_phase() >= setup_.load.ramp_time) {
+          Base::enter(Is::hold);
+        }
         return;
       case Is::probe:
       case Is::done:
@@ -198,9 +205,34 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
     Base::enter(Is::load);
     if (by_newton()) return;
     SharedForce load = load_on(*unloaded_);
+    if (by_piston()) {
+      const Grain& grain = unloaded_->grains[static_cast<std::size_t>(load.force.id)];
+      stroke_ = {load.force.id, engine_->time(), grain.position[D - 1], 0};
+      piston_ = piston();
+      added_forces(*engine_).add_force(piston_);
+      return;
+    }
     load.force.start = engine_->time();
     load.force.ramp = setup_.load.ramp_time;
     engine_->apply(load.force, load.beside);
+  }
+
+  std::shared_ptr<Piston> piston() const {
+    return std::make_shared<Piston>(stroke_, setup_.load.speed, Piston::stiffness(setup_.material),
+                                    force_of_load(setup_));
+  }
+  // Whether the grain resists with the whole force: then this force takes the piston's place.
+  bool presses() {
+    if (!piston_->presses_fully()) {
+      if (Base::in_phase() > setup_.rest.max_time) piston_->fail(setup_.rest.max_time);
+      return false;
+    }
+    stroke_.end = engine_->time();
+    added_forces(*engine_).remove_force(piston_->name());
+    piston_.reset();
+    const SharedForce load = load_on(*unloaded_);
+    engine_->apply(load.force, load.beside);
+    return true;
   }
 
   // The load by Newton's method. Told to stop it leaves the run as it was.
@@ -266,6 +298,7 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
         named_snapshot(*engine_, state, this->seed_,
                        {{"packing", setup_.packing.kind}, {"floor", setup_.packing.floor}});
     s.time += time_before();
+    s.attributes.erase(kFormerAddedForces);  // the piston is no force of the caller's own
     return s;
   }
   double time_before() const { return static_cast<double>(steps_before_) * settings_.time_step; }
@@ -283,6 +316,7 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
       case Is::hold:
         return rest_progress(d, setup_.rest);
       case Is::load:
+        if (piston_) return piston_->force() / force_of_load(setup_);
         return Base::in_phase() / std::max(setup_.load.ramp_time, 1e-300);
       case Is::probe:
         return static_cast<double>(probed_) / LayerProber::count();
@@ -305,6 +339,10 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
     archive(rested_);
     archive(steps_before_);
     archive.require(steps_before_ >= 0);
+    if (by_piston()) {
+      archive(stroke_);
+      if (archive.is_reading()) piston_ = phases_.now() == Is::load ? piston() : nullptr;
+    }
     Base::visit_engine(archive);
     archive.snapshot(unloaded_, "unloaded");
     archive.snapshot(loaded_, "loaded");
@@ -316,6 +354,8 @@ class PointLoadRun final : public PhasedRun<Layer<D>, typename LoadPhase<D>::Pha
   std::optional<LayerProber> prober_;  // settled; made anew after a resume
   int probed_ = 0;                     // probes that are done
   Reached reached_;                    // by Newton's method
+  Stroke stroke_;
+  std::shared_ptr<Piston> piston_;  // while it comes down
   // The rest by Newton's method: `never` without it, `due` when the energy is at rest.
   enum class Finish : int { never, later, due, done, failed };
   Finish finish_ = setup_.load.rest == "newton" ? Finish::later : Finish::never;

@@ -23,16 +23,18 @@ struct LoadSetup {
   double force = 300;             ///< N, downwards on one grain
   std::string method = "damped";  ///< damped: slow damped dynamics | newton: quasi-static solver
   double unbalanced_force_ratio = 1e-8;  ///< newton: to be reached
-  double ramp_time = 0.5;                ///< s from 0 to the full force (smooth ramp); damped
-  double position = 0.5;    ///< of the width: the top grain nearest to it carries the force
-  double weights = 0.1;     ///< 3D: force over a grain's mean weight; 0: load.force
-  double position_y = 0.5;  ///< 3D: likewise along y
+  double ramp_time = 0.5;         ///< s from 0 to the full force (smooth ramp); damped, force
+  std::string control = "force";  ///< damped: force (the ramp) | speed (2D: a piston, piston.h)
+  double speed = 0.01;            ///< m/s of the piston; speed
+  double position = 0.5;          ///< of the width: the top grain nearest to it carries the force
+  double weights = 0.1;           ///< 3D: force over a grain's mean weight; 0: load.force
+  double position_y = 0.5;        ///< 3D: likewise along y
   double radius = 0;        ///< m; 3D: grains of the surface so near to that one share the force
   double probe_strain = 0;  ///< 3D: of each probe before the load (layer_probe.h); 0: none
 
   auto members() const {
     return std::tie(rest, force, method, unbalanced_force_ratio, ramp_time, position, weights,
-                    position_y, radius, probe_strain);
+                    position_y, radius, probe_strain, control, speed);
   }
 };
 
