@@ -118,6 +118,7 @@ std::string SoftDisks::Work::checkpoint() const {
     out.put(c.memory.whole);
     out.put(c.touched);
   }
+  out.put(blocks_);
   return out.bytes();
 }
 
@@ -161,7 +162,14 @@ void SoftDisks::Work::restore(const std::string& checkpoint) {
     in.require(c.i >= 0 && c.i < count() && c.j < count() &&
                c.j >= -static_cast<int>(scene_.walls.size()));
   }
+  in.get(blocks_);
+  in.require(std::is_sorted(blocks_.begin(), blocks_.end()) &&
+             std::all_of(blocks_.begin(), blocks_.end(), [&](const auto& pair) {
+               return pair.first >= 0 && pair.first < count() && pair.second >= 0 &&
+                      pair.second < count() && pair.first != pair.second;
+             }));
   in.finish();
+  matrix_ = {};
   lay_out();
 }
 

@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "dem/implicit/soft_checks.h"
-#include "dem/quasistatic/block_matrix.h"
 #include "dem/shared/computation_failed.h"
 
 namespace grainfield::dem {
@@ -24,8 +23,6 @@ constexpr double kRoundOff = 16;
 // The pairs' margin: so much more than what a step is expected to move, and at least this share of
 // the widest radius, so that lists last.
 constexpr double kMargin = 2, kLeastMargin = 0.05;
-// The diagonal pivot is taken unless it is this much smaller: the tangent is nearly symmetric.
-constexpr double kPivotThreshold = 0.01;
 
 bool before(const SoftCandidate& a, const SoftCandidate& b) {
   return a.i != b.i ? a.i < b.i : a.j < b.j;
@@ -45,7 +42,6 @@ SoftDisks::Work::Work(const SoftScene& scene, const std::vector<Body<2>>& disks,
   for (const Body<2>& b : bodies_) widest_ = std::max(widest_, b.radius);
   stiffest_ = scene.grains.stiffness;
   for (const SoftWall& w : scene.walls) stiffest_ = std::max(stiffest_, w.law.stiffness);
-  solver_.setPivotThreshold(kPivotThreshold);
 }
 
 void SoftDisks::Work::step(long steps) {
@@ -222,20 +218,21 @@ void SoftDisks::Work::list(double margin) {
   lay_out();
 }
 
-// The matrix of these candidates.
+// Places of these candidates in the matrix, which is laid out anew only for pairs that it lacks.
 void SoftDisks::Work::lay_out() {
   std::vector<std::pair<int, int>> pairs;
   for (const SoftCandidate& c : candidates_) {
     if (c.j >= 0) pairs.emplace_back(c.i, c.j);
   }
-  lay_out_blocks(count(), 3, pairs, matrix_);
-  analysed_ = false;
+  const bool has = std::includes(blocks_.begin(), blocks_.end(), pairs.begin(), pairs.end());
+  if (!has) blocks_ = std::move(pairs);
+  if (!has || matrix_.size() != count()) matrix_.lay_out(count(), blocks_);
   for (SoftCandidate& c : candidates_) {
-    c.places[0] = place_of_block(matrix_, 3, c.i, c.i);
+    c.places[0] = matrix_.place(c.i, c.i);
     if (c.j < 0) continue;
-    c.places[1] = place_of_block(matrix_, 3, c.i, c.j);
-    c.places[2] = place_of_block(matrix_, 3, c.j, c.i);
-    c.places[3] = place_of_block(matrix_, 3, c.j, c.j);
+    c.places[1] = matrix_.place(c.i, c.j);
+    c.places[2] = matrix_.place(c.j, c.i);
+    c.places[3] = matrix_.place(c.j, c.j);
   }
 }
 
@@ -260,13 +257,22 @@ double SoftDisks::Work::largest_force(const Vector& z) const {
   return out;
 }
 
+// How far a force moves the lightest disk in the step, over its radius.
+double SoftDisks::Work::move_by(double force) const {
+  double out = 0;
+  for (const Body<2>& b : bodies_) {
+    out = std::max(out, force * b.inverse_mass * dt_ * dt_ / b.radius);
+  }
+  return out > 0 ? out : 1;
+}
+
 NewtonReport SoftDisks::Work::solve(Vector& z) {
   scale_ = largest_force(z);
   NewtonProblem problem;
   problem.residual = [this](const Vector& at, Vector& r) { return residual(at, r); };
   problem.factorize = [this](const Vector& at, const Vector&) { return factorize(at); };
   problem.solve = [this](const Vector& rhs, Vector& x) {
-    x = solver_.solve(rhs);
+    matrix_.solve(rhs, x);
     x *= settings_.relaxation;
   };
   NewtonSettings how;
@@ -274,6 +280,7 @@ NewtonReport SoftDisks::Work::solve(Vector& z) {
   how.tolerance =
       std::max(settings_.tolerance, kRoundOff * epsilon * stiffest_ * 2 * widest_ / scale_);
   how.max_iterations = settings_.max_iterations;
+  how.scale = move_by(scale_);
   how.patience = static_cast<std::size_t>(kPatience / settings_.relaxation);
   how.progress = kProgress;
   return newton(problem, how, z);
@@ -321,17 +328,14 @@ bool SoftDisks::Work::residual(const Vector& z, Vector& r) const {
 }
 
 bool SoftDisks::Work::factorize(const Vector& z) {
-  double* const values = matrix_.valuePtr();
-  std::fill_n(values, matrix_.nonZeros(), 0.0);
-  const int* const outer = matrix_.outerIndexPtr();
+  matrix_.clear();
   const double drag = scene_.background_damping, step = beta_ * dt_;
   const double rate = takes_end() ? (1 / step + drag) / step : (2 / dt_ + drag) / dt_;
   for (int k = 0; k < count(); ++k) {
     const Body<2>& b = bodies_[k];
     const double move = b.inverse_mass > 0 ? rate * b.radius / (b.inverse_mass * scale_) : 1;
     const double turn = b.inverse_inertia > 0 ? rate / (b.inverse_inertia * b.radius * scale_) : 1;
-    matrix_.coeffRef(3 * k, 3 * k) = matrix_.coeffRef(3 * k + 1, 3 * k + 1) = move;
-    matrix_.coeffRef(3 * k + 2, 3 * k + 2) = turn;
+    matrix_.at(matrix_.place(k, k)).diagonal() = Eigen::Vector3d(move, move, turn);
   }
   SoftForce<Derived3> f;
   for (const SoftCandidate& c : candidates_) {
@@ -356,28 +360,19 @@ bool SoftDisks::Work::factorize(const Vector& z) {
       const double r = bodies_[k].radius;
       return Eigen::Vector3d(sign * r, sign * r, part);
     };
-    const auto add = [&](int place, int column, const Eigen::Vector3d& rows,
-                         const Eigen::Vector3d& columns) {
-      const int length = outer[3 * column + 1] - outer[3 * column];
-      for (int b = 0; b < 3; ++b) {
-        for (int a = 0; a < 3; ++a) {
-          values[place + b * length + a] -= rows[a] * slopes(a, b) * columns[b];
-        }
-      }
+    const auto add = [&](int place, const Eigen::Vector3d& rows, const Eigen::Vector3d& columns) {
+      matrix_.at(place) -= rows.asDiagonal() * slopes * columns.asDiagonal();
     };
     const Eigen::Vector3d rows_i = rows_of(c.i, 1, share), columns_i = columns_of(c.i, 1, share);
-    add(c.places[0], c.i, rows_i, columns_i);
+    add(c.places[0], rows_i, columns_i);
     if (c.j < 0) continue;
     const Eigen::Vector3d rows_j = rows_of(c.j, -1, 1 - share);
     const Eigen::Vector3d columns_j = columns_of(c.j, -1, 1 - share);
-    add(c.places[1], c.j, rows_i, columns_j);
-    add(c.places[2], c.i, rows_j, columns_i);
-    add(c.places[3], c.j, rows_j, columns_j);
+    add(c.places[1], rows_i, columns_j);
+    add(c.places[2], rows_j, columns_i);
+    add(c.places[3], rows_j, columns_j);
   }
-  if (!analysed_) solver_.analyzePattern(matrix_);
-  analysed_ = true;
-  solver_.factorize(matrix_);
-  return solver_.info() == Eigen::Success;
+  return matrix_.factorize();
 }
 
 void SoftDisks::Work::commit(const Vector& z) {

@@ -1,11 +1,10 @@
 // The inside of SoftDisks: the state, the list of pairs, and a step.
 #pragma once
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseLU>
 #include <array>
 #include <string>
 #include <vector>
 
+#include "dem/implicit/block_lu.h"
 #include "dem/implicit/soft_disks.h"
 #include "dem/neighbours/hierarchical_grid.h"
 #include "dem/newton/newton.h"
@@ -17,7 +16,7 @@ struct SoftCandidate {
   int i = 0, j = 0;  ///< j = -1 - w: wall w
   SoftMemory memory;
   bool touched = false;         ///< at the end of the last step
-  std::array<int, 4> places{};  ///< of the blocks (i, i), (i, j), (j, i), (j, j) in the matrix
+  std::array<int, 4> places{};  ///< of (i, i), (i, j), (j, i), (j, j) in the matrix
 };
 
 class SoftDisks::Work {
@@ -155,6 +154,7 @@ class SoftDisks::Work {
   void lay_out();
   bool listed_for(const Vector& z) const;
   double largest_force(const Vector& z) const;
+  double move_by(double force) const;
   NewtonReport solve(Vector& z);
   bool residual(const Vector& z, Vector& r) const;
   bool factorize(const Vector& z);
@@ -180,9 +180,8 @@ class SoftDisks::Work {
   std::vector<VectorOf<2>> listed_;  // places when the list was made
   double margin_ = -1;               // m
 
-  Eigen::SparseMatrix<double> matrix_;
-  Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> solver_;
-  bool analysed_ = false;
+  BlockLu matrix_;
+  std::vector<std::pair<int, int>> blocks_;  // of it, sorted: all candidates' and some before them
 };
 
 }  // namespace grainfield::dem

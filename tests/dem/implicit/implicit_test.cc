@@ -410,6 +410,29 @@ TEST(Implicit, RelaxationTakesMoreIterationsToTheSamePlace) {
   }
 }
 
+// A step's move is measured against what forces do in it, not against the radius: friction that
+// sticks is solved at any step.
+TEST(Implicit, SolvesStickingFrictionInTheShortestSteps) {
+  LatticeSetup lattice;
+  lattice.base_grains = 12;
+  lattice.radius = 0.5;
+  const double stiffness = 1e4, dashpot = std::sqrt(stiffness);
+  SoftScene scene;
+  scene.gravity = {0, -1};
+  scene.grains.stiffness = stiffness;
+  scene.grains.damping = 0.5 * dashpot;
+  scene.grains.slip_damping = 50 * dashpot;
+  scene.grains.rolling_friction = 0.9;
+  scene.walls = {ground(scene.grains)};
+  for (const double shorter : {1e4, 1e6}) {
+    ImplicitSettings steps = steps_of(explicit_step(1, stiffness) / shorter);
+    steps.most_halvings = 0;
+    SoftDisks disks(scene, pile_bodies(lattice, 4 / std::numbers::pi), steps);
+    EXPECT_NO_THROW(disks.step(10)) << shorter;
+    EXPECT_EQ(disks.tally().steps, 10);
+  }
+}
+
 // Steps are halved where Newton's method has too few iterations, and where a disk would fly past
 // others.
 TEST(Implicit, HalvesStepsThatAreTooLong) {
