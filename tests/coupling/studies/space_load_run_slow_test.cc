@@ -267,8 +267,9 @@ TEST(SpaceLoadRun, ALoadThatRearrangesGrainsIsADoubt) {
               HasSubstr("grains rearrange, so the models do not apply. Lower load.weights."));
   const Summary small = read_summary(results() / "out/summary.json");
   const auto at = small.find("verdict.doubts");
-  if (at != small.end())
+  if (at != small.end()) {
     EXPECT_THAT(std::get<std::string>(at->second), ::testing::Not(HasSubstr("rearrange")));
+  }
 }
 
 TEST(SpaceLoadRun, RefusesWhatDoesNotHoldInSpace) {
