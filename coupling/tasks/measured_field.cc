@@ -152,6 +152,7 @@ class Reader {
     for (Heading& h : headings_) {
       const std::string plain = plain_column_name(h.name);
       if (plain == "component" || plain == "value") return;
+      if (plain.rfind("sigma", 0) == 0) return;
       if (plain != "pressure" && plain != "shear") continue;
       if (only != nullptr) return;
       only = &h;
