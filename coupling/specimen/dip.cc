@@ -81,8 +81,8 @@ std::vector<std::string> dip_lines(const Dip& dip) {
     const double reach =
         dip.difference.standard_error * quantile(boost::math::students_t(n - 1), 1 - kLevel / 2);
     out.back() += fmt::format(
-        " The true difference can be anything from {:.2f} (peak) to {:.2f} (dip) rho g h: pour "
-        "more heaps to narrow this.",
+        " The true difference can be anything from {:.2f} (peak) to {:.2f} (dip) rho g h "
+        "(95 %): pour more heaps to narrow this.",
         dip.difference.mean - reach, dip.difference.mean + reach);
   }
   return out;

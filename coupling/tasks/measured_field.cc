@@ -148,10 +148,11 @@ class Reader {
  private:
   // Without columns component and value, the only column named by a component has the values.
   void name_value() {
-    if (has("component") || has("value")) return;
     Heading* only = nullptr;
     for (Heading& h : headings_) {
       const std::string plain = plain_column_name(h.name);
+      if (plain == "component" || plain == "value") return;
+      if (plain.rfind("sigma", 0) == 0) return;
       if (plain != "pressure" && plain != "shear") continue;
       if (only != nullptr) return;
       only = &h;
@@ -176,19 +177,20 @@ class Reader {
     if (needed) need(name);
     const Heading* heading = find(name);
     if (heading == nullptr) return {};
+    const std::string& called = name == "value" && !component_.empty() ? component_ : name;
     for (const auto& [unit, factor] : units) {
       if (unit != heading->unit) continue;
       const double scale = !std::isnan(factor) ? factor : &units == &lengths() ? own : scaled(unit);
-      return {{name, heading->index, std::nullopt, std::nullopt}, scale};
+      return {{called, heading->index, std::nullopt, std::nullopt}, scale};
     }
     if (const auto other = parse_unit(heading->unit); other && is_of(other->kind, units))
-      return {{name, heading->index, std::nullopt, std::nullopt}, std::pow(10.0, other->ten)};
+      return {{called, heading->index, std::nullopt, std::nullopt}, std::pow(10.0, other->ten)};
     const auto names = names_of(units);
     refuse(heading->unit.empty()
                ? fmt::format("column {}: found no unit, expected one in brackets, such as {} ({}); "
                              "allowed: {}",
-                             name, name, names[1], fmt::join(names, ", "))
-               : fmt::format("column {}: found the unit \"{}\", allowed: {}", name, heading->unit,
+                             called, called, names[1], fmt::join(names, ", "))
+               : fmt::format("column {}: found the unit \"{}\", allowed: {}", called, heading->unit,
                              fmt::join(names, ", ")));
   }
   // The scale of the heap or the response.

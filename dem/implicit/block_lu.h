@@ -3,7 +3,8 @@
 // The blocks are ordered by approximate minimum degree (Eigen's AMD) once for a pattern; then each
 // row is eliminated by those before it. Pivots are whole diagonal blocks: the tangent of a step is
 // dominated by masses and repulsion, which are symmetric and definite, and Newton's method mends
-// what round-off leaves. Blocks that are zero, as those of disks apart, take no time.
+// what round-off leaves, or does not converge and the step is halved. A row is not eliminated by
+// one whose block it has 0, as of disks apart.
 #pragma once
 #include <Eigen/Core>
 #include <utility>

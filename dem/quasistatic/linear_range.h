@@ -4,7 +4,8 @@
 // The response changes normal force f_n and tangential force f_t of a contact with friction mu by
 // d_n and d_t. Multiplied by s it opens the contact at f_n + s d_n = 0, and brings one that sticks
 // to Coulomb's limit at the least s > 0 with |f_t + s d_t| = mu (f_n + s d_n). With friction a
-// contact slides before it opens. Contacts that close, and rolling resistance, are left out.
+// contact slides before it opens; one at the limit to the last digit counts as sliding. Contacts
+// that close, normals that turn, and rolling resistance are left out.
 #pragma once
 #include <limits>
 #include <vector>

@@ -265,7 +265,7 @@ def ends(runs):
             shares = [run.number(k) / run.depth for k in (key, f"{key}.standard_error")]
             rows.append(of(run) + [with_error(run, f"linearity.first_{name}", 2) for name in ("changes", "opens")]
                         + [with_error(run, key, 1), f"{shares[0]:.2f} ± {shares[1]:.2f}"])
-    return table(head, rows)
+    return table(line(head), rows)
 
 
 def settlements(runs):
@@ -277,7 +277,7 @@ def settlements(runs):
         keys = [f"settlement.{model}.{place}" for place in ("surface", "axis") for model in (HOMOGENEOUS, BY_DEPTH)]
         if math.isfinite(run.number(keys[0])):
             rows.append(of(run) + [with_error(run, key, 2) for key in [*keys, "response.settlement"]])
-    return table(head, rows)
+    return table(line(head), rows)
 
 
 def costs(runs):

@@ -261,7 +261,7 @@ class Analysis {
     add("linearity.hundredth_changes", end.hundredth);
   }
 
-  // Of the grains and of the models, which know their moduli before.
+  // Settlements of the grains beside those of models that have been given their moduli before.
   void compare_settlements(const std::vector<MeanResponse>& layers, const SettlementPlaces& places,
                            const RunFacts& facts) {
     const double unit = whole_.mean[SlabConstants::e_v] / facts.force * (dim_ == 3 ? depth_ : 1);

@@ -66,7 +66,7 @@ MeanResponse mean_response(const dem::Snapshot& rest, const dem::Materials& mate
                            double force, const std::vector<double>& depths, double depth,
                            const SettlementPlaces& at, const std::vector<SeenThrough>& through);
 
-/// Of the free grains, N.
+/// Mean weight of the free grains, N.
 double mean_weight(const dem::Snapshot& snapshot);
 
 }  // namespace grainfield::coupling

@@ -59,7 +59,8 @@ void check_limit(const Case& value) {
   const auto& setup = value.get<dem::PointLoadSetup>();
   if (setup.packing.shape == "superellipsoid") {
     throw std::invalid_argument(
-        "packing.shape: found \"superellipsoid\", allowed: disk, regular, irregular (linear response "
+        "packing.shape: found \"superellipsoid\", allowed: disk, regular, irregular (linear "
+        "response "
         "is of disks, polygons and spheres)");
   }
   if (setup.packing.dim == 3 && setup.packing.sides != "periodic") {

@@ -64,8 +64,7 @@ void Layer<2>::check(const Setup& s) {
   if (s.load.control == "speed" && s.load.method == "newton") {
     throw std::invalid_argument(
         "load.control: found \"speed\" with load.method = newton, allowed: \"force\" (a piston "
-        "moves "
-        "in time); or set load.method = damped");
+        "moves in time); or set load.method = damped");
   }
   grains_of(s.packing);
 }

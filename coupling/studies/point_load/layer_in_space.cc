@@ -45,8 +45,7 @@ void Layer<3>::check(const Setup& s) {
   if (s.load.control == "speed") {
     throw std::invalid_argument(
         "load.control: found \"speed\" with packing.dim = 3, allowed: \"force\" (the piston "
-        "presses "
-        "grains in the plane)");
+        "presses grains in the plane)");
   }
   const bool angular = is_angular(p);
   for (const auto& [key, method] :

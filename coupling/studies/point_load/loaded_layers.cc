@@ -85,7 +85,7 @@ void LoadedLayers::add_doubts(std::vector<std::string>& doubts) const {
   const double moved = mean("load.max_displacement_over_radius");
   const double changed = mean("load.contacts_gained") + mean("load.contacts_lost");
   const double contacts = mean("dem.contacts");
-  if (!(moved > kMoved && changed > kChanged * contacts)) return;
+  if (!(contacts > 0 && moved > kMoved && changed > kChanged * contacts)) return;
   const bool by_weights = dim == 3 && value.get<dem::PointLoadSetup>().load.weights > 0;
   doubts.push_back(fmt::format(
       "The load of {:.3g} N moves a grain by {:.2g} radii, and changes {:.0f} contacts of {:.0f}: "

@@ -124,6 +124,8 @@ TEST(IdleKeys, ChangeNothing) {
     if (need == key.needs.end()) continue;
     const std::string text = pile ? kTinyPile : testing::tiny_case();
     Overrides set{choice_against(*need)};
+    // A choice of space alone: the tiny layer is in the plane.
+    if (set[0] == "packing.kind=close_packed") continue;
     if (!pile) set.insert(set.end(), {"packing.width=0.1", "packing.depth=0.03"});
     if (need->key == "packing.sizes" || need->key == "packing.shape") {
       set.push_back("packing.kind=layered");

@@ -93,6 +93,14 @@ TEST(ImportFieldForms, AColumnMayBeNamedByItsComponent) {
   EXPECT_THAT(
       refused("x (mm),pressure (kPa),shear (kPa),error (kPa)\n0,1,0,0.1\n"),
       HasSubstr("no column \"value\"; found: x, pressure, shear, error; expected x (UNIT)"));
+  // Words about the column have its own name.
+  EXPECT_THAT(
+      refused("x (mm),pressure\n0,1\n"),
+      HasSubstr("column pressure: found no unit, expected one in brackets, such as pressure ("));
+  EXPECT_THAT(refused("x (mm),Value (Pa),VALUE (Pa),pressure (Pa)\n0,1,2,3\n"),
+              HasSubstr("no column \"value\""));
+  EXPECT_THAT(refused("x (mm),pressure (kPa),sigma_xx (kPa)\n0,1,2\n"),
+              HasSubstr("no column \"value\""));
   EXPECT_THAT(refused("x (mm),component,valeu (kPa)\n0,pressure,1\n"),
               HasSubstr("did you mean valeu?"));
 }

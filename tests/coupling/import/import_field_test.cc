@@ -472,10 +472,9 @@ TEST(ImportField, SaysWhatIsWrongInOneLine) {
           "a quarter of them; correct the unit of x, or its origin: 0 is below the apex");
   refused(head + "0,pressure,1,0.1\n", " --height '80 mm' --slope 30 --rho-g 15000 --width 2",
           "--width: found 2, allowed: above 0, up to 0.02 (a quarter of --height), in m");
-  refused(
-      "position (mm),pressure (kPa)\n", good,
-      "no column \"x\"; found: position, pressure; did you mean position? Expected are x (UNIT), "
-      "component, value (UNIT), error (UNIT)");
+  refused("position (mm),pressure (kPa)\n", good,
+          "no column \"x\"; found: position, pressure; expected x (UNIT), component, value (UNIT), "
+          "error (UNIT)");
   refused("r (mm),component,value (kPa),error (kPa)\n-1,pressure,1,0.1\n", good,
           "column r: found -1, allowed: 0 or more, a distance from the axis");
   refused(head + "0,pressure,1e299,1\n", good, "m.csv:2: column value: found 1e299");

@@ -278,7 +278,8 @@ TEST(PointLoad, RefusesWhatCannotBe) {
   EXPECT_THAT(refusal(s), testing::HasSubstr("packing.sizes"));
   s = small("triangular");
   s.packing.shape = "irregular";
-  EXPECT_THAT(refusal(s), testing::HasSubstr("packing.shape: found irregular, allowed: disk, regular, "));
+  EXPECT_THAT(refusal(s),
+              testing::HasSubstr("packing.shape: found irregular, allowed: disk, regular, "));
   s = pentagons();
   s.packing.side = 0;
   EXPECT_THAT(refusal(s), testing::HasSubstr("packing.side: found 0, allowed: above 0"));

@@ -47,7 +47,7 @@ TEST(LinearSolver, SolvesWhereTheIterationBreaksDown) {
       broken += fails;
       solve_anywhere(*solver, rhs, x);
       ASSERT_TRUE(x.allFinite()) << first << ", " << k;
-      // Of either right side, and so of their difference.
+      // Tolerances of both solutions, whose right sides are at most 1 and 2 long.
       EXPECT_LT((matrix * x - rhs).norm(), 4 * kLinearTolerance) << first << ", " << k;
     }
   }
