@@ -24,8 +24,10 @@ TEST(CheckDimensions, KeysOfSpheresAreRefusedInThePlane) {
   EXPECT_THAT(complaint(layer, {"material.damping_model=critical"}),
               HasSubstr("material.damping_model: found \"critical\", allowed: only in three "
                         "dimensions: critical | viscoelastic; the grains of"));
-  EXPECT_THAT(complaint(layer, {"packing.shape=sphere"}),
-              HasSubstr("found \"sphere\", allowed: disk | irregular (2D) | superellipsoid (3D)"));
+  EXPECT_THAT(
+      complaint(layer, {"packing.shape=sphere"}),
+      HasSubstr(
+          "found \"sphere\", allowed: disk | regular (2D) | irregular (2D) | superellipsoid (3D)"));
   EXPECT_THAT(complaint(layer, {"packing.shape=superellipsoid"}),
               HasSubstr("packing.shape: found \"superellipsoid\", allowed: "));
   EXPECT_THAT(complaint(testing::small_case("pile"), {"shape.kind=sphere"}),
