@@ -129,7 +129,8 @@ class Reader {
   ForeignColumn need(const std::string& name) const {
     if (const Heading* found = find(name)) return {name, found->index, std::nullopt, std::nullopt};
     std::vector<std::string> there;
-    for (const Heading& h : headings_) there.push_back(h.name);
+    for (const Heading& h : headings_)
+      there.push_back(h.name == "value" && !component_.empty() ? component_ : h.name);
     const std::string meant = continuum::misspelt(name, there);
     refuse(fmt::format(
         "no column \"{}\"; found: {}{}; expected x (UNIT), component, value (UNIT), error (UNIT) "
