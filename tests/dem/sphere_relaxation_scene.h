@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 
@@ -79,6 +80,25 @@ inline std::unique_ptr<Engine> settled(EngineSettings e, bool periodic, int colu
                        kRadius * random.uniform(0.85, 1.1)));
   }
   come_to_rest(*engine, 1e-8);
+  return engine;
+}
+
+/// Poly-disperse disks dropped between two walls without friction, at rest.
+inline std::unique_ptr<Engine> settled_disks(const EngineSettings& e, int columns, int rows,
+                                             std::uint64_t seed) {
+  const double cell = 2.3 * kRadius;
+  auto engine = make_engine(e);
+  engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, e.friction});
+  engine->add_wall({"left", {0, 0, 0}, {1, 0, 0}, 0});
+  engine->add_wall({"right", {columns * cell, 0, 0}, {-1, 0, 0}, 0});
+  Random random(seed);
+  for (int k = 0; k < columns * rows; ++k) {
+    const auto at = [&](int n) { return cell * (n + 0.5 + 0.05 * random.uniform(-1, 1)); };
+    NewGrain g = sphere({at(k % columns), at(k / columns), 0});
+    g.radius = kRadius * random.uniform(0.85, 1.1);
+    engine->add(g);
+  }
+  come_to_rest(*engine, 1e-7);
   return engine;
 }
 

@@ -141,20 +141,7 @@ void expect_disks_as_newton(const AnyLaw& law, double within, End kind = End::sh
   settings.friction = 0.6;
   settings.integrator = IntegratorKind::verlet;
   settings.time_step = 2e-5;
-  const double cell = 2.3 * kRadius;
-  constexpr int kColumns = 10, kRows = 6;
-  const auto engine = make_engine(settings);
-  engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.6});
-  engine->add_wall({"left", {0, 0, 0}, {1, 0, 0}, 0});
-  engine->add_wall({"right", {kColumns * cell, 0, 0}, {-1, 0, 0}, 0});
-  Random random(3);
-  for (int k = 0; k < kColumns * kRows; ++k) {
-    const auto at = [&](int n) { return cell * (n + 0.5 + 0.05 * random.uniform(-1, 1)); };
-    NewGrain g = sphere({at(k % kColumns), at(k / kColumns), 0});
-    g.radius = kRadius * random.uniform(0.85, 1.1);
-    engine->add(g);
-  }
-  come_to_rest(*engine, 1e-7);
+  const auto engine = settled_disks(settings, 10, 6, 3);
   expect_as_newton(settings, engine->snapshot(), 1, within, kind);
 }
 

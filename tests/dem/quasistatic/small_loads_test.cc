@@ -48,20 +48,7 @@ const Packing& disks() {
     p.settings.friction = 3;
     p.settings.integrator = IntegratorKind::verlet;
     p.settings.time_step = 5e-5;
-    const double cell = 2.3 * kRadius;
-    constexpr int kColumns = 12, kRows = 8;
-    const auto engine = make_engine(p.settings);
-    engine->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 3});
-    engine->add_wall({"left", {0, 0, 0}, {1, 0, 0}, 0});
-    engine->add_wall({"right", {kColumns * cell, 0, 0}, {-1, 0, 0}, 0});
-    Random random(2);
-    for (int k = 0; k < kColumns * kRows; ++k) {
-      const auto at = [&](int n) { return cell * (n + 0.5 + 0.05 * random.uniform(-1, 1)); };
-      NewGrain g = sphere({at(k % kColumns), at(k / kColumns), 0});
-      g.radius = kRadius * random.uniform(0.85, 1.1);
-      engine->add(g);
-    }
-    come_to_rest(*engine, 1e-7);
+    const auto engine = settled_disks(p.settings, 12, 8, 2);
     p.rest = engine->snapshot();
     p.relax_at(1e-12);
     return p;
