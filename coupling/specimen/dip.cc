@@ -77,7 +77,7 @@ std::vector<std::string> dip_lines(const Dip& dip) {
                   numbers, dip.difference.mean, dip.difference.standard_error, few_realizations(n),
                   200 * std::min(p, 1 - p))};
   if (dip.verdict == "neither") {
-    // What the heaps leave open: without it "no dip" is read as a measurement.
+    // The interval that the heaps leave open: without it "no dip" is read as a measurement.
     const double reach =
         dip.difference.standard_error * quantile(boost::math::students_t(n - 1), 1 - kLevel / 2);
     out.back() += fmt::format(

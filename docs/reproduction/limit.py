@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Prints the tables of docs/cases/boussinesq-limit.md, or puts them into the page, and draws its picture.
+"""Prints the tables of docs/cases/boussinesq-limit.md and of the pentagons of point-load-packings.md, or puts them into
+the pages, and draws the picture.
 
     docs/reproduction/limit.py [--write] [--picture PICTURE] [--states FOLDER]
 
@@ -8,7 +9,7 @@ figures in NAME.json (those that it lacks in states/boussinesq-ends/NAME.json), 
 where it is kept. A misfit is the root of the squared distance of the grains' mean from a prediction less the
 variance of that mean, over the root of the squared prediction; where it is within its noise, "<" and the
 upper end of 95 % stand for it. "–" has not run.
---write replaces the tables of the page that have the same heads. Needs gnuplot for the picture.
+--write replaces the tables of the pages that have the same heads. Needs gnuplot for the picture.
 """
 import argparse
 import csv
@@ -29,6 +30,8 @@ from record import write_file  # noqa: E402
 from tables import line, put, table  # noqa: E402
 
 PAGE = HERE.parent / "cases" / "boussinesq-limit.md"
+PACKINGS = PAGE.with_name("point-load-packings.md")
+ISOTROPIC = HERE / "results" / "point-load-pentagons.profiles.md"  # has the isotropic layer, smooth base
 LISTS = ("boussinesq", "boussinesq-space")
 ENDS = "boussinesq-ends"
 ROUGH = "rough"  # the base on which no contact slides
@@ -291,6 +294,30 @@ def costs(runs):
     return table(line(head), rows)
 
 
+def isotropic_axis():
+    """Pressure below the load in an isotropic layer on a smooth base, over F/h, by depth over h."""
+    out = {}
+    for part in ISOTROPIC.read_text().split("\n## ")[1:]:
+        lines = [[cell.strip() for cell in one.strip("|").split("|")] for one in part.splitlines() if one[:1] == "|"]
+        at = re.match(r"depth (\S+) h", part)
+        below = next(row for row in lines[2:] if float(row[0]) == 0)
+        out[float(at[1]) if at else 1.0] = float(below[lines[0].index("layer")])
+    return out
+
+
+def anisotropy(runs):
+    """By how much pentagons exceed on the axis an isotropic layer, one of their anisotropy, and one by depth."""
+    run = next(one for one in usual(runs) if one.name == "deep-15-pentagons")
+    rows = [["isotropic"]]
+    unit = run.number("load.force") / run.number("layer.depth")
+    for at, own in isotropic_axis().items():
+        grains, error, _ = run.axis("homogeneous_smooth", "w_depths")[at]
+        rows[0].append(percent(grains / (unit * own) - 1, error / (unit * own)))
+    for words, model in (("anisotropic", "homogeneous_smooth"), ("the same, stiffness by depth", "by_depth_smooth")):
+        rows.append([words] + [percent(*run.excess(model, "w_depths", at)) for at in isotropic_axis()])
+    return table(line(["layer", *(f"{at:g} $h$" for at in (0.25, 0.5, 0.75)), "base"]), rows)
+
+
 TABLES = (misfits, bases, causes, linearity, costs)
 #: Tables of figures that not every run has: of none, there is no table.
 FURTHER = (ends, settlements)
@@ -340,7 +367,7 @@ def main():
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--states", type=pathlib.Path, default=HERE / "states")
     options.add_argument("--picture", type=pathlib.Path)
-    options.add_argument("--write", action="store_true", help="put the tables into the page")
+    options.add_argument("--write", action="store_true", help="put the tables into the pages")
     given = options.parse_args()
     runs = finished(given.states)
     made = [one(runs) for one in TABLES]
@@ -349,8 +376,9 @@ def main():
         draw_misfits(runs, given.picture)
     if given.write:
         write_file(PAGE, put(PAGE.read_text(), made, PAGE).encode())
+        write_file(PACKINGS, put(PACKINGS.read_text(), [anisotropy(runs)], PACKINGS).encode())
     elif not given.picture:
-        print("\n".join(made), end="")
+        print("\n".join([*made, anisotropy(runs)]), end="")
 
 
 if __name__ == "__main__":

@@ -1071,6 +1071,11 @@ def test_where_linearity_ends_and_what_settles_are_told_by_the_runs_that_know(tm
     assert (more.number("linearity.hundredth_changes"), more.depth) == (5.0, 10)
 
 
+def test_the_page_of_packings_has_the_table_of_pentagons():
+    made = limit.anisotropy(limit.finished(limit.HERE / "states"))
+    assert made.count("\n") == 5 and made in limit.PACKINGS.read_text(), "docs/reproduction/limit.py --write"
+
+
 def test_the_page_of_layers_of_growing_depth_has_the_tables_of_its_runs():
     """Runs that ended after it was written may be missing."""
     runs = limit.finished(limit.HERE / "states")
