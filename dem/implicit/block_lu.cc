@@ -71,22 +71,28 @@ int BlockLu::place(int i, int j) const {
   return static_cast<int>(std::lower_bound(first, last, rank_[j]) - columns_.begin());
 }
 
-void BlockLu::clear() { std::fill(values_.begin(), values_.end(), Block::Zero()); }
+void BlockLu::clear() { std::fill(values_.begin(), values_.end(), PaddedBlock()); }
 
 bool BlockLu::factorize() {
+  bool regular = true;
+  with_lanes([&](auto width) { regular = factorize_by<width()>(); });
+  return regular;
+}
+
+template <int W>
+bool BlockLu::factorize_by() {
   std::vector<int> places(size());  // of the row's columns
   for (int i = 0; i < size(); ++i) {
     for (int p = rows_[i]; p < rows_[i + 1]; ++p) places[columns_[p]] = p;
     for (int p = rows_[i]; p < middle_[i]; ++p) {
-      Block& l = values_[p];
+      Block l = at(p);
       if ((l.array() == 0).all()) continue;
-      const int k = columns_[p];
-      l = (l * values_[middle_[k]]).eval();
-      for (int q = middle_[k] + 1; q < rows_[k + 1]; ++q) {
-        values_[places[columns_[q]]].noalias() -= l.lazyProduct(values_[q]);
-      }
+      const int k = columns_[p], first = middle_[k] + 1;
+      l = (l * at(middle_[k])).eval();
+      take_row_of<W>(values_[p], &values_[first], &columns_[first], rows_[k + 1] - first,
+                     places.data(), values_.data());
     }
-    Block& pivot = values_[middle_[i]];
+    Block pivot = at(middle_[i]);
     pivot = pivot.inverse().eval();
     if (!pivot.allFinite()) return false;
   }
@@ -97,14 +103,14 @@ void BlockLu::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) const {
   std::vector<Eigen::Vector3d> y(size());
   for (int i = 0; i < size(); ++i) {
     y[i] = rhs.segment<3>(3 * order_[i]);
-    for (int p = rows_[i]; p < middle_[i]; ++p) y[i] -= values_[p].lazyProduct(y[columns_[p]]);
+    for (int p = rows_[i]; p < middle_[i]; ++p) y[i] -= at(p).lazyProduct(y[columns_[p]]);
   }
   x.resize(rhs.size());
   for (int i = size() - 1; i >= 0; --i) {
     for (int p = middle_[i] + 1; p < rows_[i + 1]; ++p) {
-      y[i] -= values_[p].lazyProduct(y[columns_[p]]);
+      y[i] -= at(p).lazyProduct(y[columns_[p]]);
     }
-    y[i] = (values_[middle_[i]] * y[i]).eval();
+    y[i] = (at(middle_[i]) * y[i]).eval();
     x.segment<3>(3 * order_[i]) = y[i];
   }
 }

@@ -18,6 +18,11 @@ using soft_contact::Derived3;
 // A step with relaxation 1 that has not lowered the residual's 2-norm to kProgress of it in so many
 // iterations stalls; with less relaxation as many more are allowed.
 constexpr double kPatience = 12, kProgress = 0.7;
+// An iteration that lowers the largest residual to this share of it keeps its factors for the next.
+constexpr double kKeep = 0.01;
+// Of the way that a disk's velocity would take it, a disk that touches another goes about so much:
+// in the trapezoidal rule the velocities of stiff contacts swing from step to step.
+constexpr double kSwing = 0.25;
 // Round-off of a force K s, in units of K times the widest diameter times epsilon.
 constexpr double kRoundOff = 16;
 // The pairs' margin: so much more than what a step is expected to move, and at least this share of
@@ -145,12 +150,13 @@ void SoftDisks::Work::predict(Vector& z) const {
   for (int k = 0; k < count(); ++k) {
     const Body<2>& b = bodies_[k];
     const bool free = b.inverse_mass > 0;
-    Vec u = dt_ * plain(b.velocity);
+    const double share = free && held[k] ? kSwing : 1;
+    Vec u = share * dt_ * plain(b.velocity);
     if (free && !held[k]) {
       u = (u + 0.5 * dt_ * dt_ * plain(scene_.gravity)) / (1 + 0.5 * drag * dt_);
     }
     z.segment<2>(3 * k) = u / b.radius;
-    z[3 * k + 2] = dt_ * b.spin;
+    z[3 * k + 2] = share * dt_ * b.spin;
   }
 }
 
@@ -270,7 +276,13 @@ NewtonReport SoftDisks::Work::solve(Vector& z) {
   scale_ = largest_force(z);
   NewtonProblem problem;
   problem.residual = [this](const Vector& at, Vector& r) { return residual(at, r); };
-  problem.factorize = [this](const Vector& at, const Vector&) { return factorize(at); };
+  double before = 0;
+  problem.factorize = [this, &before](const Vector& at, const Vector& r) {
+    const double now = r.cwiseAbs().maxCoeff();
+    const bool keep = now < kKeep * before;
+    before = now;
+    return keep || factorize(at);
+  };
   problem.solve = [this](const Vector& rhs, Vector& x) {
     matrix_.solve(rhs, x);
     x *= settings_.relaxation;

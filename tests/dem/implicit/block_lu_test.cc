@@ -7,6 +7,7 @@
 #include <set>
 
 #include "dem/random/random.h"
+#include "dem/space/lane_width.h"
 
 namespace grainfield::dem {
 namespace {
@@ -34,8 +35,8 @@ TEST(BlockLu, SolvesWithAnyOfItsBlocksZero) {
       matrix.clear();
       Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * n, 3 * n);
       const auto fill = [&](int i, int j) {
-        BlockLu::Block& block = matrix.at(matrix.place(i, j));
-        for (int k = 0; k < 9; ++k) block(k) = random.uniform(-1, 1);
+        BlockLu::Block block = matrix.at(matrix.place(i, j));
+        for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = random.uniform(-1, 1);
         if (i == j) block.diagonal().array() += 3.0 * n;
         dense.block<3, 3>(3 * i, 3 * j) = block;
       };
@@ -64,6 +65,31 @@ TEST(BlockLu, TellsASingularMatrix) {
     for (const int j : {0, 1}) matrix.at(matrix.place(i, j)).setIdentity();
   }
   EXPECT_FALSE(matrix.factorize());
+}
+
+TEST(BlockLu, HasTheSameBitsAtAnyWidth) {
+  const int before = lane_width();
+  std::vector<Eigen::VectorXd> found;
+  for (const int width : {2, 4, 8}) {
+    if (!use_lane_width(width)) continue;
+    Random random(8);
+    const int n = 60;
+    const Pairs pairs = some_pairs(n, random);
+    BlockLu matrix;
+    matrix.lay_out(n, pairs);
+    matrix.clear();
+    const auto fill = [&](int i, int j, double more) {
+      BlockLu::Block block = matrix.at(matrix.place(i, j));
+      for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = random.uniform(-1, 1);
+      block.diagonal().array() += more;
+    };
+    for (int k = 0; k < n; ++k) fill(k, k, 12);
+    for (const auto& [i, j] : pairs) fill(i, j, 0), fill(j, i, 0);
+    ASSERT_TRUE(matrix.factorize());
+    matrix.solve(Eigen::VectorXd::LinSpaced(3 * n, -1, 1), found.emplace_back());
+  }
+  use_lane_width(before);
+  for (const Eigen::VectorXd& x : found) EXPECT_EQ(x, found[0]);
 }
 
 }  // namespace
