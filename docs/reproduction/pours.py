@@ -50,11 +50,15 @@ POURS = (
     ("layers, 6,300 grains", ("pile-line-source",)),
     ("shifted layers, 6,500 grains", ("pile-asymmetric-line",)),
 )
-#: Studies of which results/ has the difference alone: states are lost or not kept. They slept by other rules.
-RECORDED = (("equal disks from a point, 968, other sleep", "liffman-dropped"),
-            ("point source, 6,500 grains, other sleep", "pile-point-source"),
-            ("elliptic grains from a point, 6,500, other sleep", "pile-elliptic"),
-            ("moving point source, 6,500 grains, other sleep", "pile-asymmetric-point"))
+#: Studies and members of which results/ has the difference alone: states are lost or not kept. Other sleep: older rules.
+RECORDED = (("equal disks from a point, 968, other sleep", "liffman-dropped", ""),
+            ("equal disks with friction, 968", "liffman-dropped-grains", "coulomb_968"),
+            ("disks of unlike radii, 968", "liffman-dropped-grains", "unlike_968"),
+            ("disks of unlike radii with friction, 968", "liffman-dropped-grains", "coulomb_unlike_968"),
+            ("pentagons with friction, 968", "liffman-dropped-grains", "pentagons_968"),
+            ("point source, 6,500 grains, other sleep", "pile-point-source", ""),
+            ("elliptic grains from a point, 6,500, other sleep", "pile-elliptic", ""),
+            ("moving point source, 6,500 grains, other sleep", "pile-asymmetric-point", ""))
 BASE = ("memory/memory-800-*", "pile-rest-800-awake", "pile-rest-800-sleeping")
 FIGURES = ("axis", "dip", "inside", "fraction", "slope")
 OF_ALL_BASES = ("axis", "dip", "inside")
@@ -141,7 +145,8 @@ def pours(folder=STATES):
 
 def recorded_pours(results):
     """{what: shoulder less centre} of RECORDED."""
-    return {what: one for what, study in RECORDED if (one := results.number(study, "dip.difference")) is not None}
+    found = {what: results.number(study, "dip.difference", member) for what, study, member in RECORDED}
+    return {what: one for what, one in found.items() if one is not None}
 
 
 def pours_table(found, recorded):
