@@ -110,12 +110,12 @@ done
 
 # Dropped piles of runs/liffman.txt and liffman-grains.txt, of those that are there.
 dropped() { # NAME MEMBER: piles by implicit motion, judged as the explicit ones
-  local files=("$here/states/liffman/$1"-?.h5.xz)
-  [ ${#files[@]} -eq 5 ] || return 0
-  local k names=()
-  for k in 1 2 3 4 5; do
-    xz -dkc "$here/states/liffman/$1-$k.h5.xz" > "$1-$k.h5"
-    names+=("\"$1-$k.h5\"")
+  local file name names=()
+  for file in "$here/states/liffman/$1"-?.h5.xz; do
+    [ -e "$file" ] || return 0
+    name=$(basename "$file" .xz)
+    xz -dkc "$file" > "$name"
+    names+=("\"$name\"")
   done
   run "dropped-$2" liffman-dropped --set "grains.files=[$(IFS=,; echo "${names[*]}")]" "${@:3}"
   measure summary liffman-dropped "dropped-$2/summary.json" --member "$2" --keys dip. dem.repose_angle
