@@ -122,7 +122,7 @@ dropped() { # NAME MEMBER: piles by implicit motion, judged as the explicit ones
 }
 dropped implicit implicit
 dropped coulomb implicit_coulomb --set material.friction=0.5
-for name in unlike coulomb pentagons; do
+for name in unlike coulomb coulomb_unlike pentagons; do
   record=$here/states/liffman-grains/${name}_968.json
   [ ! -e "$record" ] || measure summary liffman-dropped-grains "$record" --member ${name}_968 --keys dip. dem.repose_angle
 done
