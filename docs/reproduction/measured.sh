@@ -117,7 +117,7 @@ dropped() { # NAME MEMBER: piles by implicit motion, judged as the explicit ones
     xz -dkc "$file" > "$name"
     names+=("\"$name\"")
   done
-  run "dropped-$2" liffman-dropped --set "grains.files=[$(IFS=,; echo "${names[*]}")]" "${@:3}"
+  run "dropped-$2" liffman-dropped --set ensemble.realizations=$((6 * ${#names[@]})) --set "grains.files=[$(IFS=,; echo "${names[*]}")]" "${@:3}"
   measure summary liffman-dropped "dropped-$2/summary.json" --member "$2" --keys dip. dem.repose_angle
 }
 dropped implicit implicit

@@ -4,7 +4,7 @@
     docs/reproduction/verdicts.py             prints it
     docs/reproduction/verdicts.py --write     puts it into the page
 
-Reads the record of runs/verdict.txt. A cell is the misfit; n marks the nearest model of a packing, s one that its grains
+Reads the records of runs/verdict.txt. A cell is the misfit; n marks the nearest model of a packing, s one that its grains
 support.
 """
 import argparse
@@ -20,7 +20,7 @@ from record import write_file  # noqa: E402
 from tables import put, table  # noqa: E402
 
 PAGE = HERE.parent / "cases/point-load-verdict.md"
-RECORD = HERE / "states/verdict/verdict.json"
+RECORDS = HERE / "states/verdict"
 PACKINGS = {"mono": "lattice", "mono_3": "lattice, 3 N", "friction_03": "shifted, μ = 0.3", "friction_06": "0.6",
             "friction_09": "0.9", "bidisperse": "two sizes", "pentagons": "pentagons", "polydisperse": "many sizes",
             "rough": "on fixed grains"}
@@ -40,17 +40,17 @@ def plain(value):
     return f"{value:.0f}" if value >= 100 else f"{value:#.3g}"
 
 
-def misfit(found, model, packing):
+def misfit(found, model):
     marks = []
-    if found[f"verdict.best_model.{packing}"] == model:
+    if found["verdict.best_model"] == model:
         marks.append("n")
-    if found[f"fit.{model}.supported.{packing}"] == "yes":
+    if found[f"fit.{model}.supported"] == "yes":
         marks.append("s")
-    return " ".join([plain(found[f"fit.{model}.chi2_per_dof.{packing}"]), ", ".join(marks)]).strip()
+    return " ".join([plain(found[f"fit.{model}.chi2_per_dof"]), ", ".join(marks)]).strip()
 
 
-def constant(found, key, packing, digits):
-    value, error = found[f"{key}.{packing}"], found[f"{key}.error.{packing}"]
+def constant(found, key, digits=2):
+    value, error = found[key], found[f"{key}.error"]
     if not isinstance(error, (int, float)):  # it ends at its bound
         return f"{value:.{digits}f}".replace("-", "−")
     while digits < 6 and error < 1.5 * 10**-digits:
@@ -59,21 +59,25 @@ def constant(found, key, packing, digits):
 
 
 def made(found):
-    rows = [[words, *(misfit(found, model, packing) for packing in PACKINGS)] for model, words in MODELS.items()]
-    nearest = {packing: found[f"verdict.best_model.{packing}"] for packing in PACKINGS}
-    rows.append(["chance of the nearest",
-                 *(plain(found[f"fit.{nearest[packing]}.chi2_chance.{packing}"]) for packing in PACKINGS)])
-    rows.append(["ν of the isotropic rough layer",
-                 *(constant(found, "fit.layer_rough.nu", packing, 2) for packing in PACKINGS)])
-    rows.append(["$\\rho = r/\\sqrt t$, half plane",
-                 *(constant(found, "fit.orthotropic_half_plane.rho", packing, 2) for packing in PACKINGS)])
+    """The table of {packing: summary}."""
+    def row(words, cell):
+        return [words, *(cell(found[packing]) for packing in PACKINGS)]
+
+    rows = [row(words, lambda one, model=model: misfit(one, model)) for model, words in MODELS.items()]
+    rows.append(row("chance of the nearest", lambda one: plain(one[f"fit.{one['verdict.best_model']}.chi2_chance"])))
+    rows.append(row("ν of the isotropic rough layer", lambda one: constant(one, "fit.layer_rough.nu")))
+    rows.append(row("$\\rho = r/\\sqrt t$, half plane", lambda one: constant(one, "fit.orthotropic_half_plane.rho")))
     return [table(HEAD, rows)]
+
+
+def records():
+    return {packing: json.loads((RECORDS / f"{packing}.json").read_text())["summary"] for packing in PACKINGS}
 
 
 def main(words=None):
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--write", action="store_true", help="put it into the page")
-    tables = made(json.loads(RECORD.read_text())["summary"])
+    tables = made(records())
     if options.parse_args(words).write:
         write_file(PAGE, put(PAGE.read_text(), tables, PAGE).encode())
     else:
