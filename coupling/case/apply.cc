@@ -93,9 +93,20 @@ void refuse_unknown_unit(const Key& key, const Assignment& a) {
   }
 }
 
+void refuse_decimal_comma(const Key& key, const Assignment& a) {
+  for (const Scalar& item : a.items) {
+    const auto* text = std::get_if<std::string>(&item);
+    const std::string right = text == nullptr ? "" : with_point(*text);
+    if (right.empty()) continue;
+    reject(a, key.path(),
+           fmt::format("found \"{}\", allowed: a decimal point; write {}", *text, right));
+  }
+}
+
 [[noreturn]] void wrong_type(const Key& key, const Assignment& a) {
   const std::string type = type_name(key);
   if (type == "number" || type == "list of numbers") refuse_unknown_unit(key, a);
+  if (type == "number") refuse_decimal_comma(key, a);
   const char* article = type == "integer" ? "an" : "a";
   const char* example = type == "list of numbers" ? " [0.2, 0.4]"
                         : type == "list of words" ? " [\"one\", \"two\"]"

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "coupling/base/read_input.h"
+#include "coupling/case/units.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -89,6 +90,25 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
 
 std::string first_line(std::string_view text) {
   return std::string(text.substr(0, text.find('\n')));
+}
+
+std::string trimmed(std::string_view s) {
+  const auto first = s.find_first_not_of(" \t\r"), last = s.find_last_not_of(" \t\r");
+  return first == std::string_view::npos ? "" : std::string(s.substr(first, last - first + 1));
+}
+
+// What is wrong with "friction = 0,5" in this line, from 1; empty where that is not the mistake.
+std::string decimal_comma(std::string_view text, unsigned line) {
+  for (; line > 1; --line) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  text = text.substr(0, text.find('\n'));
+  text = text.substr(0, text.find('#'));
+  const std::size_t equals = text.find('=');
+  if (equals == std::string_view::npos) return "";
+  const std::string key = trimmed(text.substr(0, equals)), value = trimmed(text.substr(equals + 1));
+  const std::string right = with_point(value);
+  if (right.empty()) return "";
+  return fmt::format("{}: found {}, allowed: a decimal point; write {} = {}", key, value, key,
+                     right);
 }
 
 // Walks over TOML outside of comments and strings. Keys are told from values only as far as it
@@ -183,8 +203,11 @@ std::vector<Assignment> read_document(const std::string& file) {
   try {
     table = toml::parse(text, file);
   } catch (const toml::parse_error& e) {
-    throw std::invalid_argument(fmt::format("{}:{}: not valid TOML: {}", file,
-                                            e.source().begin.line, first_line(e.description())));
+    const unsigned line = e.source().begin.line;
+    const std::string comma = decimal_comma(text, line);
+    throw std::invalid_argument(
+        fmt::format("{}:{}: {}", file, line,
+                    comma.empty() ? "not valid TOML: " + first_line(e.description()) : comma));
   }
   std::vector<Placed> placed;
   flatten(table, "", file, placed);
@@ -212,10 +235,6 @@ std::vector<Assignment> parse_overrides(const std::vector<std::string>& texts) {
 
 Assignment parse_override(const std::string& text) {
   const std::size_t at = text.find('=');
-  const auto trimmed = [](std::string s) {
-    const auto first = s.find_first_not_of(" \t"), last = s.find_last_not_of(" \t");
-    return first == std::string::npos ? std::string() : s.substr(first, last - first + 1);
-  };
   Assignment out;
   out.origin = "--set";
   if (at == std::string::npos) {

@@ -35,6 +35,19 @@ std::optional<Measure> parse_measure(const std::string& text) {
   return Measure{*value, unit->kind};
 }
 
+std::string with_point(std::string text) {
+  const std::string digits = "0123456789";
+  const std::size_t comma = text.find(',');
+  if (comma == 0 || comma == std::string::npos ||
+      digits.find(text[comma - 1]) == std::string::npos ||
+      text.find_first_of(digits, comma) != comma + 1) {
+    return "";
+  }
+  text[comma] = '.';
+  if (parse_number(text)) return text;
+  return parse_measure(text) ? toml_text(text) : "";
+}
+
 UnitKinds kinds_of(const std::string& unit) {
   const std::string plane = kind_of(plain(unit));
   const std::string space = "(3D: ";

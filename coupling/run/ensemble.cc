@@ -19,6 +19,7 @@
 
 #include "coupling/base/signals.h"
 #include "coupling/run/realization_file.h"
+#include "coupling/run/time_left.h"
 #include "dem/cannot_read_now.h"
 #include "dem/run/run.h"
 #include "dem/shared/number.h"
@@ -78,7 +79,7 @@ class Worker {
       : tasks_(tasks),
         options_(options),
         states_(tasks.size()),
-        begun_at_(tasks.size(), 0),
+        left_(tasks.size()),
         errors_(tasks.size()) {}
 
   // Takes the tasks of `mine` one after another until none is left or one failed or was stopped.
@@ -96,20 +97,18 @@ class Worker {
     }
   }
 
-  // Progress of this rank's tasks, `done_before` of which are none of `mine`, after so many
-  // seconds.
+  // Progress of this rank's tasks, `done_before` of which are none of `mine`.
   EnsembleProgress progress(const std::vector<std::size_t>& mine, std::size_t done_before,
-                            double seconds) {
+                            int workers) {
     EnsembleProgress out;
     out.total = static_cast<int>(mine.size() + done_before);
     out.done = static_cast<int>(done_before);
     out.fraction = static_cast<double>(out.done) / out.total;
     const std::lock_guard lock(mutex_);
-    double least = 2, done_now = 0;
+    double least = 2;
     for (const std::size_t task : mine) {
       const auto& state = states_[task];
       out.fraction += state.fraction / out.total;
-      done_now += (state.fraction - begun_at_[task]) / out.total;
       if (state.fraction >= 1) {
         ++out.done;
       } else if (!state.phase.empty() && state.fraction < least) {
@@ -122,7 +121,7 @@ class Worker {
         out.unbalanced_force_ratio = state.unbalanced_force_ratio;
       }
     }
-    out.seconds_left = done_now > 0.01 ? seconds * (1 - out.fraction) / done_now : -1;
+    out.seconds_left = left_.left(mine, workers);
     return out;
   }
 
@@ -169,9 +168,9 @@ class Worker {
 
   void note(std::size_t task, const dem::Progress& progress, bool finished = false) {
     const std::lock_guard lock(mutex_);
-    if (states_[task].phase.empty()) begun_at_[task] = progress.fraction;
     states_[task] = progress;
     states_[task].fraction = finished ? 1 : std::min(progress.fraction, kAlmost);
+    left_.tell(task, seconds_since(begin_), states_[task].fraction);
   }
 
   Outcome simulate(std::size_t index, int engine_threads) {
@@ -241,10 +240,11 @@ class Worker {
 
   const std::vector<Task>& tasks_;
   const EnsembleOptions& options_;
-  std::mutex mutex_;  // states_, notes_
+  const Clock::time_point begin_ = Clock::now();
+  std::mutex mutex_;  // states_, left_, notes_
   std::vector<dem::Progress> states_;
+  TimeLeft left_;
   std::vector<std::string> notes_;
-  std::vector<double> begun_at_;            // fraction that a checkpoint had already
   std::vector<std::exception_ptr> errors_;  // every task writes its own
   std::atomic<std::size_t> next_ = 0;
   std::atomic<bool> halt_ = false, stopped_ = false;
@@ -335,7 +335,6 @@ void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const Ensembl
             fmt::format("--threads: no thread can be started: {}", error.code().message()));
       }
     }
-    const auto start = Clock::now();
     bool told = false;
     Clock::time_point reported;
     while (running > 0) {
@@ -348,13 +347,12 @@ void run_tasks(const std::vector<Task>& tasks, const Ranks& ranks, const Ensembl
       pass_notes();
       if (options.progress && Clock::now() - reported > kReportEvery) {
         reported = Clock::now();
-        options.progress(worker.progress(mine, done_before, seconds_since(start)));
+        options.progress(worker.progress(mine, done_before, workers));
       }
     }
     for (auto& thread : pool) thread.join();
     pass_notes();
-    if (options.progress)
-      options.progress(worker.progress(mine, done_before, seconds_since(start)));
+    if (options.progress) options.progress(worker.progress(mine, done_before, workers));
   }
   const std::vector<std::string> all_notes = ranks.gather(noted);
   for (std::size_t r = 1; ranks.first() && options.note && r < all_notes.size(); ++r) {

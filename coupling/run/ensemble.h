@@ -36,7 +36,7 @@ struct EnsembleProgress {
   int awake = 0;              ///< of these, those that do not sleep; 0: not counted
   double kinetic_energy = 0;  ///< J
   double unbalanced_force_ratio = 0;
-  double seconds_left = 0;  ///< an estimate from the time so far; negative: not known yet
+  double seconds_left = 0;  ///< an estimate (time_left.h); negative: not known yet
 };
 
 struct EnsembleOptions {

@@ -43,7 +43,8 @@ class SoftRun : public ArchivedRun {
   Progress progress() const final {
     Progress p;
     p.phase = done_ ? "done" : phase();
-    p.fraction = done_ ? 1 : disks_.time() / (static_cast<double>(last_step_) * setup_.time_step());
+    const double end = static_cast<double>(last_step_) * setup_.time_step();
+    p.fraction = done_ ? 1 : work(disks_.time()) / work(end);
     p.simulated_time = disks_.time();
     p.steps = tally().steps;
     p.grains = p.awake = static_cast<int>(disks_.bodies().size());
@@ -66,6 +67,8 @@ class SoftRun : public ArchivedRun {
   virtual const ImplicitTally& tally() const = 0;
   virtual std::string phase() const = 0;
   virtual bool may_rest() const { return true; }
+  /// Computing time up to a simulated one, in any unit: for the progress.
+  virtual double work(double time) const { return time; }
 
   /// Without walls and contacts.
   Snapshot bare_snapshot(const std::string& state, const std::string& packing) const {

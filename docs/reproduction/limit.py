@@ -40,6 +40,7 @@ REGIONS = {"base": "on the base", "axis": "on the axis", "all": "of all profiles
 AT = 0.25  # of the depth: where the axis is looked at
 RIGHT = (2, 5, 10, 20)  # %
 COLOURS = {HOMOGENEOUS: "#1a5fa8", BY_DEPTH: "#c5502f"}
+SHAPES = {"disk": "disks", "regular": "regular polygons", "irregular": "pentagons"}  # by packing.shape
 POINTS = {0.0: 6, 0.2: 4, 0.5: 7, 1.0: 9}  # gnuplot's, by friction
 
 
@@ -55,7 +56,7 @@ class Run:
         given = dict(s.split("=", 1) for s in settings)
         self.friction = float(given.get("material.friction", 0.5))
         self.grains = int(given.get("response.grains", 1))
-        self.shape = {"irregular": "pentagons"}.get(given.get("packing.shape"), "disks")
+        self.shape = SHAPES[given.get("packing.shape", "disk")]
         if "spheres" in given.get("sweep.values", ""):
             self.shape = "spheres"
         self.width = next((float(value) for key, value in given.items() if key.endswith("packing.width")), None)

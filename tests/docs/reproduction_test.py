@@ -1071,6 +1071,16 @@ def test_where_linearity_ends_and_what_settles_are_told_by_the_runs_that_know(tm
     assert (more.number("linearity.hundredth_changes"), more.depth) == (5.0, 10)
 
 
+def test_layers_are_named_by_the_shape_of_their_grains(tmp_path):
+    def named(*settings):
+        return limit.of(layers_under_loads(tmp_path, "c", [*settings, "material.friction=1"]))[0]
+
+    assert named() == named("packing.shape=disk") == "10.0"
+    assert named("packing.shape=regular") == "10.0 (regular polygons)"
+    assert named("packing.shape=irregular") == "10.0 (pentagons)"
+    assert named('sweep.values=["spheres_10"]') == "10.0 (spheres)"
+
+
 def test_the_page_of_packings_has_the_table_of_pentagons():
     made = limit.anisotropy(limit.finished(limit.HERE / "states"))
     assert made.count("\n") == 5 and made in limit.PACKINGS.read_text(), "docs/reproduction/limit.py --write"

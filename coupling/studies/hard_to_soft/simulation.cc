@@ -29,6 +29,7 @@ double HardToSoftSetup::width() const {
 double HardToSoftSetup::longest_time() const {
   return ((drops() ? grains * interval : 0) + max_time) * time_unit();
 }
+double HardToSoftSetup::drop_time() const { return drops() ? grains * interval * time_unit() : 0; }
 
 namespace {
 
@@ -191,6 +192,11 @@ class HardToSoftRun final : public SwitchBase {
     return out;
   }
   bool may_rest() const override { return share() > 0.5 && dropped() >= drop_.size(); }
+  /// A step takes a time in proportion to the disks, whose number grows with the time.
+  double work(double time) const override {
+    const double last = setup_.drop_time();
+    return time < last ? 0.5 * time * time / last : time - 0.5 * last;
+  }
   const ImplicitTally& tally() const override { return disks_.implicit_tally(); }
   std::string phase() const override {
     const std::string soft = fmt::format("{:.0f} % soft", 100 * share());

@@ -55,6 +55,7 @@ struct HardToSoftSetup {
   double time_step() const;     ///< s
   double time_unit() const;     ///< sqrt(d/g), s
   double width() const;         ///< of the box or the floor, m
+  double drop_time() const;     ///< from the first disk of a drop to the last, s; rain: 0
   double longest_time() const;  ///< s
 };
 

@@ -9,16 +9,10 @@
 #include "coupling/run/study_result.h"
 #include "coupling/statistics/spread.h"
 #include "coupling/studies/point_load/figures.h"
+#include "coupling/studies/point_load/load_effect.h"
 #include "coupling/studies/point_load/simulation.h"
 
 namespace grainfield::coupling {
-namespace {
-
-// A load that moves a grain by more radii and changes a larger share of the contacts is not small.
-constexpr double kMoved = 0.5, kChanged = 0.05;
-
-}  // namespace
-
 LoadedLayers::LoadedLayers(const Case& a_case, const std::vector<std::string>& realizations,
                            int threads, int dimension, std::size_t beside)
     : value(a_case),
@@ -35,6 +29,7 @@ LoadedLayers::LoadedLayers(const Case& a_case, const std::vector<std::string>& r
 
 void LoadedLayers::add_figures_of(const Realization& realization) {
   for (const auto& [key, figure] : realization.figures) figures[key].push_back(figure);
+  pushed.push_back(pushed_over_radius(realization["unloaded"], realization["loaded"]));
   figures["response.total_over_load"].push_back(
       total_over_load(realization["unloaded"], realization["loaded"]));
 }
@@ -82,15 +77,12 @@ void LoadedLayers::add_doubts(std::vector<std::string>& doubts) const {
     const auto at = figures.find(key);
     return at == figures.end() ? 0 : spread_of(at->second).mean;
   };
-  const double moved = mean("load.max_displacement_over_radius");
-  const double changed = mean("load.contacts_gained") + mean("load.contacts_lost");
-  const double contacts = mean("dem.contacts");
-  if (!(contacts > 0 && moved > kMoved && changed > kChanged * contacts)) return;
+  const LoadEffect effect{force, mean("load.max_displacement_over_radius"),
+                          mean("load.contacts_gained") + mean("load.contacts_lost"),
+                          mean("dem.contacts"), pushed};
   const bool by_weights = dim == 3 && value.get<dem::PointLoadSetup>().load.weights > 0;
-  doubts.push_back(fmt::format(
-      "The load of {:.3g} N moves a grain by {:.2g} radii, and changes {:.0f} contacts of {:.0f}: "
-      "grains rearrange, so the models do not apply. Lower load.{}.",
-      force, moved, changed, contacts, by_weights ? "weights" : "force"));
+  const std::string doubt = rearrangement_doubt(effect, by_weights ? "load.weights" : "load.force");
+  if (!doubt.empty()) doubts.push_back(doubt);
 }
 
 Field in_models_frame(Field field, const Eigen::MatrixXd& points, int nx, int ny, int nz) {

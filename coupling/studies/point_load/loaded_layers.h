@@ -29,6 +29,7 @@ struct LoadedLayers {
   std::vector<MethodAverages> methods;
   std::shared_ptr<const Kernel> kernel;  ///< of the first method
   std::map<std::string, std::vector<double>> figures;
+  std::vector<double> pushed;  ///< pushed_over_radius of each realization
 
   std::string component() const { return dim == 2 ? "sigma_yy" : "sigma_zz"; }
   double height(std::size_t line) const { return -setup.depths[line] * layer.depth; }
@@ -38,7 +39,7 @@ struct LoadedLayers {
   /// The first method's lines, and the base; in space of radii. `note` ends that of tables.
   Observations observed(const Ensemble& base, const Field& map, const std::string& note = "") const;
   void add_own_figures(Summary& summary) const;
-  /// Appends, where the load moves grains and changes many contacts, that no elastic model applies.
+  /// Appends, where the load rearranges grains, that no elastic model applies.
   void add_doubts(std::vector<std::string>& doubts) const;
 };
 

@@ -536,6 +536,27 @@ TEST(CaseErrors, TomlSyntaxAndDuplicates) {
   EXPECT_THAT(complaint("a = 1\n\xff\xfe"), HasSubstr("not valid TOML: "));
 }
 
+TEST(CaseErrors, DecimalCommas) {
+  const std::string head = "study = \"point-load\"\n[material]\n";
+  EXPECT_EQ(complaint(head + "friction = 0,5\n"),
+            "x.toml:3: friction: found 0,5, allowed: a decimal point; write friction = 0.5");
+  EXPECT_EQ(
+      complaint(head + "density = 5000\nfriction =\t-1,5e-3  # of steel\r\n"),
+      "x.toml:4: friction: found -1,5e-3, allowed: a decimal point; write friction = -1.5e-3");
+  EXPECT_EQ(complaint(head + "friction = \"0,5\"\n"),
+            "x.toml:3: material.friction: found \"0,5\", allowed: a decimal point; write 0.5");
+  EXPECT_EQ(complaint("study = \"point-load\"\n[packing]\nradius = \"3,6 mm\"\n"),
+            "x.toml:3: packing.radius: found \"3,6 mm\", allowed: a decimal point; write "
+            "\"3.6 mm\"");
+  EXPECT_EQ(complaint(head, {"material.friction=0,5"}),
+            "--set: material.friction: found \"0,5\", allowed: a decimal point; write 0.5");
+  for (const char* other : {"1,", ",5,", "1,2,3", "0,5 0,6", "a,5"}) {
+    EXPECT_THAT(complaint(head + "friction = " + other + "\n"),
+                HasSubstr("x.toml:3: not valid TOML: "))
+        << other;
+  }
+}
+
 TEST(CaseErrors, QuickIsCheckedEvenWhenUnused) {
   EXPECT_EQ(complaint("[quick.material]\nfrction = 0.5\n"),
             "x.toml:2: material.frction: unknown key; did you mean material.friction?");

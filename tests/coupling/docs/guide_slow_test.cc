@@ -128,6 +128,30 @@ TEST(Tutorial, PointLoadRunsAsOnThePage) {
   EXPECT_THAT(page.said, HasSubstr("half space"));
 }
 
+// What `./bootstrap demo` says at its end leads to one report, which has the pictures. One layer
+// instead of sixteen.
+TEST(Demo, LeadsToOneReport) {
+  const std::string root = test::kDocs + std::string("../");
+  std::string script = testing::read_text(root + "bootstrap");
+  const std::size_t begin = script.find("\n  demo)\n"), end = script.find(";;", begin);
+  ASSERT_NE(end, std::string::npos);
+  script = std::regex_replace(script.substr(begin, end - begin), std::regex("\\\\\n *"), " ");
+  std::smatch command;
+  ASSERT_TRUE(
+      std::regex_search(script, command, std::regex("/grainfield (run .*)-o results/demo")));
+  const Folder folder;
+  const std::string run =
+      std::regex_replace(command[1].str(), std::regex("realizations=16"), "realizations=1");
+  const Output done = program(run + "-o " + (folder / "demo"), "cd " + root + " &&");
+  ASSERT_EQ(done.code, 0) << done.err;
+  const std::string said = done.out + script;
+  const std::regex page("[^ ]*report\\.html");
+  const std::vector<std::string> reports(std::sregex_token_iterator(said.begin(), said.end(), page),
+                                         std::sregex_token_iterator());
+  EXPECT_THAT(reports, ::testing::ElementsAre(folder / "demo/report.html"));
+  EXPECT_THAT(testing::read_text(folder / "demo/report.html"), HasSubstr("<img "));
+}
+
 // A table for a command of experiments.md: positions over h or in mm, made up.
 std::string table(bool heap, double height, double slope, double rho_g,
                   const std::string& unit = "kPa") {

@@ -1,14 +1,12 @@
 // Piles whose source rises with them (source.above), and lattice piles with a bend.
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 #include <numeric>
 
 #include "coupling/studies/pile/simulation.h"
 #include "dem/grains/lattice_pile.h"
-#include "tests/coupling/pile_scene.h"
+#include "tests/coupling/finished_run.h"
 
 namespace grainfield::dem {
 namespace {
@@ -62,9 +60,7 @@ TEST(DroppedPile, GrainsFallFromSoManyDiametersAboveTheTop) {
 
 TEST(DroppedPile, RestsOnTheFloorsFrictionAlone) {
   const PileSetup s = dropped(40);
-  const auto run = make_pile_run(s, 3, 1);
-  finish(*run);
-  const RunResult r = run->result();
+  const RunResult r = finished(make_pile_run(s, 3, 1));
   EXPECT_EQ(r.figures.at("dem.grains"), 40);
   EXPECT_NEAR(r.figures.at("base.weight_ratio"), 1, 1e-3);
   EXPECT_GT(r.figures.at("pile.height"), 4 * s.shape.radius);
@@ -83,9 +79,7 @@ TEST(DroppedPile, RestsOnTheFloorsFrictionAlone) {
 
 TEST(DroppedPile, ResumesToTheSameBitsOnAnyNumberOfThreads) {
   const PileSetup s = dropped(12);
-  const std::string file = (std::filesystem::temp_directory_path() /
-                            ("grainfield_dropped_" + std::to_string(getpid()) + ".h5"))
-                               .string();
+  const FileOfRun file("dropped");
   const auto whole = make_pile_run(s, 9, 1);
   long total = 0;
   for (; !whole->done(); total += 500) whole->advance(500);
@@ -93,15 +87,12 @@ TEST(DroppedPile, ResumesToTheSameBitsOnAnyNumberOfThreads) {
     {
       const auto first = make_pile_run(s, 9, 2);
       first->advance(static_cast<long>(share * static_cast<double>(total)));
-      first->save(file);
+      first->save(file.path());
     }
     const auto second = make_pile_run(s, 9, 3);
-    second->restore(file);
-    finish(*second);
-    EXPECT_TRUE(same(whole->result().snapshots[0].second, second->result().snapshots[0].second))
-        << share;
+    second->restore(file.path());
+    expect_same(finished(second), whole->result(), std::to_string(share));
   }
-  std::filesystem::remove(file);
 }
 
 TEST(DroppedPile, RefusesAFunnelThatWouldRise) {

@@ -10,7 +10,7 @@
 #include "dem/grains/grain_family.h"
 #include "dem/random/random.h"
 #include "dem/shapes/polygon.h"
-#include "tests/coupling/pile_scene.h"
+#include "tests/coupling/finished_run.h"
 
 namespace grainfield::dem {
 namespace {
@@ -57,9 +57,7 @@ TEST(Funnel, PlatesLeaveTheMouthOpen) {
 TEST(Funnel, GrainsComeDownThroughTheMouth) {
   PileSetup s = funnel_pile(0.14);
   s.floor.length = 6;
-  const auto run = make_pile_run(s, 3, 1);
-  finish(*run);
-  const RunResult r = run->result();
+  const RunResult r = finished(make_pile_run(s, 3, 1));
   const Snapshot& pile = r.snapshots[0].second;
   int plates = 0;
   for (const Grain& g : pile.grains) {
@@ -84,13 +82,7 @@ TEST(Funnel, AnOverfilledFunnelEndsTheRun) {
   s.source.interval = 0.02;
   s.source.speed = 4;
   s.material.friction = 2;
-  const auto run = make_pile_run(s, 4, 1);
-  std::string said = "finished";
-  try {
-    finish(*run);
-  } catch (const ComputationFailed& error) {
-    said = error.what();
-  }
+  const std::string said = failure_of(make_pile_run(s, 4, 1));
   EXPECT_THAT(said, testing::HasSubstr("stuck in the funnel"));
   EXPECT_THAT(said, testing::HasSubstr("raise source.opening, now 0.14 m"));
 }

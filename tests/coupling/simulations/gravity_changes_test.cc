@@ -1,7 +1,6 @@
 // A packing goes on from its snapshot, and a pile that stands already is brought to rest under
 // another gravity as the run that poured it would have done.
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "dem/engine/engine.h"
 #include "dem/run/run.h"
 #include "dem/shapes/polygon.h"
+#include "tests/coupling/finished_run.h"
 
 namespace grainfield::dem {
 namespace {
@@ -32,10 +32,6 @@ PileSetup poured(const std::string& shape) {
   return s;
 }
 
-void finish(Run& run) {
-  while (!run.done()) run.advance(5000);
-}
-
 /// Largest difference of places over the radius, and of forces over the largest.
 std::pair<double, double> difference(const Snapshot& a, const Snapshot& b) {
   double place = 0, force = 0, largest = 0;
@@ -49,19 +45,6 @@ std::pair<double, double> difference(const Snapshot& a, const Snapshot& b) {
   }
   return {place, force / largest};
 }
-
-class InFile {
- public:
-  InFile()
-      : path_((std::filesystem::temp_directory_path() /
-               ("grainfield_changes_" + std::to_string(getpid()) + ".h5"))
-                  .string()) {}
-  ~InFile() { std::filesystem::remove(path_); }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 // In motion and half settled: the worst case for what a snapshot may have left out.
 TEST(GravityChanges, AnEngineGoesOnFromASnapshot) {
@@ -128,7 +111,7 @@ TEST(GravityChanges, SnapshotsThatCannotGoOnAreRefused) {
 
 // Stops anywhere, also between the ramp's end and the next setting of gravity.
 TEST(GravityChanges, TheSameBitsWhereverARunStops) {
-  const InFile file;
+  const FileOfRun file("changes");
   PileSetup s = poured("disk");
   s.change.gravity = {5};
   const auto whole = make_pile_run(s, 5, 1);
@@ -151,12 +134,10 @@ TEST(GravityChanges, TheSameBitsWhereverARunStops) {
 }
 
 TEST(GravityChanges, AFinishedPileGivesWhatThePouredOneGave) {
-  const InFile file;
+  const FileOfRun file("changes");
   for (const char* shape : {"rand1", "disk"}) {
     const PileSetup s = poured(shape);
-    const auto whole = make_pile_run(s, 5, 1);
-    finish(*whole);
-    const RunResult expected = whole->result();
+    const RunResult expected = finished(make_pile_run(s, 5, 1));
     std::filesystem::remove(file.path());
     write_snapshot(file.path(), "/r/pile", expected.snapshots[0].second);
     const auto run = make_pile_change_run(s, file.path(), "/r", 1);
@@ -179,13 +160,10 @@ TEST(GravityChanges, AFinishedPileGivesWhatThePouredOneGave) {
 }
 
 TEST(GravityChanges, AFinishedPileResumesToTheSameBits) {
-  const InFile file, image;
+  const FileOfRun file("changes");
   const PileSetup s = poured("rand1");
-  const auto pour = make_pile_run(s, 5, 1);
-  finish(*pour);
-  write_snapshot(file.path(), "/pile", pour->result().snapshots[0].second);
-  const auto whole = make_pile_change_run(s, file.path(), "", 1);
-  finish(*whole);
+  write_snapshot(file.path(), "/pile", finished(make_pile_run(s, 5, 1)).snapshots[0].second);
+  const RunResult whole = finished(make_pile_change_run(s, file.path(), "", 1));
   const std::string checkpoint = file.path() + ".checkpoint";
   for (const long stop : {0L, 333L, 5000L, 20000L}) {
     {
@@ -195,13 +173,7 @@ TEST(GravityChanges, AFinishedPileResumesToTheSameBits) {
     }
     const auto second = make_pile_change_run(s, file.path(), "", 2);
     second->restore(checkpoint);
-    finish(*second);
-    for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_EQ(
-          difference(second->result().snapshots[k].second, whole->result().snapshots[k].second),
-          std::pair(0.0, 0.0))
-          << stop;
-    }
+    expect_same(finished(second), whole, std::to_string(stop));
   }
   PileSetup other = s;
   other.change.ramp_time = 0.06;

@@ -1,15 +1,13 @@
 // The pile study: balance, restart to the same bits, any number of threads, changes of gravity.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 
 #include "coupling/studies/pile/simulation.h"
-#include "dem/random/random.h"
 #include "dem/snapshot/contact_changes.h"
-#include "tests/coupling/pile_scene.h"
+#include "tests/coupling/finished_run.h"
 #include "tests/dem/imbalance.h"
 
 namespace grainfield::dem {
@@ -20,8 +18,7 @@ TEST(Pile, BaseCarriesTheWeight) {
     for (const char* source : {"point", "line"}) {
       const PileSetup s = small_pile(source, shape);
       const auto run = make_pile_run(s, 3, 1);
-      finish(*run);
-      const RunResult r = run->result();
+      const RunResult r = finished(run);
       EXPECT_NEAR(r.figures.at("base.weight_ratio"), 1, 1e-3) << shape << " " << source;
       expect_balanced(r.snapshots[0].second, 1e-3, std::string(shape) + " " + source);
       EXPECT_EQ(r.figures.at("dem.grains") + r.figures.at("pile.grains_not_poured"), 80);
@@ -42,9 +39,7 @@ TEST(Pile, RecordsItselfWhileItGrows) {
     const auto plain = make_pile_run(s, 3, 1);
     finish(*plain);
     s.record = {20, 50};
-    const auto run = make_pile_run(s, 3, 1);
-    finish(*run);
-    const RunResult r = run->result();
+    const RunResult r = finished(make_pile_run(s, 3, 1));
     ASSERT_EQ(r.snapshots.size(), 3u) << source;
     EXPECT_TRUE(same(r.snapshots[0].second, plain->result().snapshots[0].second)) << source;
     const Snapshot& pile = r.snapshots[0].second;
@@ -69,9 +64,7 @@ TEST(Pile, RecordsItselfWhileItGrows) {
 TEST(Pile, FunnelMovesAndDropsOneGrainPerInterval) {
   PileSetup s = small_pile("point", "disk");
   s.source.move = 1.5;
-  const auto run = make_pile_run(s, 3, 1);
-  finish(*run);
-  const RunResult r = run->result();
+  const RunResult r = finished(make_pile_run(s, 3, 1));
   EXPECT_GT(r.figures.at("pile.pour_time"), 79 * s.source.interval);
   EXPECT_LT(r.figures.at("pile.pour_time"), 79 * s.source.interval + 0.5);
   const Snapshot& pile = r.snapshots[0].second;
@@ -85,16 +78,6 @@ TEST(Pile, FunnelMovesAndDropsOneGrainPerInterval) {
   }
   EXPECT_LT(early, -0.2);
   EXPECT_GT(late, 0.2);
-}
-
-// Same figures, where nan equals nan.
-bool same_figures(const RunResult& a, const RunResult& b) {
-  if (a.figures.size() != b.figures.size()) return false;
-  for (const auto& [key, value] : a.figures) {
-    const double other = b.figures.at(key);
-    if (value != other && !(std::isnan(value) && std::isnan(other))) return false;
-  }
-  return true;
 }
 
 PileSetup with_changes(const std::string& source, const std::string& shape) {
@@ -116,25 +99,17 @@ TEST(Pile, SameBitsOnAnyNumberOfThreads) {
     for (const char* source : {"point", "line"}) {
       RunResult first;
       for (const int threads : {1, 2, 3}) {
-        const auto run = make_pile_run(with_changes(source, shape), 5, threads);
-        finish(*run);
-        const RunResult r = run->result();
+        const RunResult r = finished(make_pile_run(with_changes(source, shape), 5, threads));
         ASSERT_EQ(r.snapshots.size(), 3u);
         if (threads == 1) first = r;
-        for (std::size_t k = 0; k < 3; ++k) {
-          EXPECT_TRUE(same(r.snapshots[k].second, first.snapshots[k].second))
-              << shape << " " << source << " " << threads << " threads";
-        }
-        EXPECT_TRUE(same_figures(r, first));
+        expect_same(r, first, fmt::format("{} {} {} threads", shape, source, threads));
       }
     }
   }
 }
 
 TEST(Pile, ResumesToTheSameBitsFromAnyStep) {
-  const std::string file = (std::filesystem::temp_directory_path() /
-                            ("grainfield_pile_" + std::to_string(getpid()) + ".h5"))
-                               .string();
+  const FileOfRun file("pile");
   Random random(1);
   for (const char* shape : {"disk", "rand1"}) {
     for (const char* source : {"point", "line"}) {
@@ -146,35 +121,17 @@ TEST(Pile, ResumesToTheSameBitsFromAnyStep) {
         whole->advance(1000);
         total += 1000;
       }
-      const RunResult expected = whole->result();
-      for (int trial = 0; trial < 3; ++trial) {
-        const long stop = static_cast<long>(random.uniform() * static_cast<double>(total));
-        {
-          const auto first = make_pile_run(s, 9, 1 + trial % 2);
-          first->advance(stop);
-          first->save(file);
-        }
-        const auto second = make_pile_run(s, 9, 2 - trial % 2);
-        second->restore(file);
-        finish(*second);
-        const RunResult got = second->result();
-        ASSERT_EQ(got.snapshots.size(), expected.snapshots.size());
-        for (std::size_t k = 0; k < got.snapshots.size(); ++k) {
-          EXPECT_TRUE(same(got.snapshots[k].second, expected.snapshots[k].second))
-              << shape << " " << source << ": " << got.snapshots[k].first << ", stopped at "
-              << stop;
-        }
-        EXPECT_TRUE(same_figures(got, expected)) << "stopped at " << stop;
-      }
+      SCOPED_TRACE(fmt::format("{} {}", shape, source));
+      const auto make = [&](int threads) { return make_pile_run(s, 9, threads); };
+      expect_same_after_stops(make, whole->result(), static_cast<double>(total), 3, file, random);
       PileSetup changed = s;
       changed.source.spread = 0.25;
-      EXPECT_THROW(make_pile_run(changed, 9, 1)->restore(file), std::invalid_argument);
-      EXPECT_THROW(make_pile_run(s, 10, 1)->restore(file), std::invalid_argument);
-      std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
-      EXPECT_THROW(make_pile_run(s, 9, 1)->restore(file), std::invalid_argument);
+      EXPECT_THROW(make_pile_run(changed, 9, 1)->restore(file.path()), std::invalid_argument);
+      EXPECT_THROW(make_pile_run(s, 10, 1)->restore(file.path()), std::invalid_argument);
+      std::filesystem::resize_file(file.path(), std::filesystem::file_size(file.path()) / 2);
+      EXPECT_THROW(make(1)->restore(file.path()), std::invalid_argument);
     }
   }
-  std::filesystem::remove(file);
 }
 
 TEST(Pile, EveryChangeOfGravityStartsFromThePile) {
@@ -183,14 +140,11 @@ TEST(Pile, EveryChangeOfGravityStartsFromThePile) {
   // contact force of a few weights.
   s.rest.unbalanced_force_ratio = 3e-4;
   s.rest.kinetic_to_elastic_energy = 1e-4;
-  const auto both = make_pile_run(s, 2, 1);
-  finish(*both);
+  const RunResult r = finished(make_pile_run(s, 2, 1));
   s.change.gravity = {8.829};
-  const auto one = make_pile_run(s, 2, 1);
-  finish(*one);
-  const RunResult r = both->result();
+  const RunResult one = finished(make_pile_run(s, 2, 1));
   ASSERT_EQ(r.snapshots[2].first, "gravity_8.829");
-  EXPECT_TRUE(same(r.snapshots[2].second, one->result().snapshots[1].second));
+  EXPECT_TRUE(same(r.snapshots[2].second, one.snapshots[1].second));
   const double weight = base_force(r.snapshots[0].second).y();
   EXPECT_EQ(r.snapshots[1].second.gravity.y(), -5);
   EXPECT_NEAR(base_force(r.snapshots[1].second).y() / weight, 5 / 9.81, 1e-3);
@@ -206,27 +160,18 @@ TEST(Pile, NewtonAgreesWithDampedDynamics) {
   s.change.ramp_time = 0.3;
   s.rest.unbalanced_force_ratio = 1e-7;
   s.rest.kinetic_to_elastic_energy = 1e-13;
-  const auto damped = make_pile_run(s, 4, 1);
-  finish(*damped);
+  const RunResult a = finished(make_pile_run(s, 4, 1));
   s.change.method = "newton";
-  const auto newton = make_pile_run(s, 4, 1);
-  finish(*newton);
-  const RunResult a = damped->result(), b = newton->result();
+  const RunResult b = finished(make_pile_run(s, 4, 1));
   ASSERT_EQ(b.snapshots.size(), 2u);
   EXPECT_EQ(b.snapshots[1].first, "gravity_9.7");
   EXPECT_EQ(b.snapshots[1].second.attributes.at("state"), "gravity_9.7");
   expect_balanced(b.snapshots[1].second, 1e-8);
   ASSERT_TRUE(same(a.snapshots[0].second, b.snapshots[0].second));
   ASSERT_EQ(a.figures.at("change.gravity_9.7.contacts_lost"), 0);
-  double difference = 0, moved = 0;
-  for (std::size_t k = 0; k < a.snapshots[0].second.grains.size(); ++k) {
-    const Vec3 before = a.snapshots[0].second.grains[k].position;
-    moved += (a.snapshots[1].second.grains[k].position - before).squaredNorm();
-    difference +=
-        (a.snapshots[1].second.grains[k].position - b.snapshots[1].second.grains[k].position)
-            .squaredNorm();
-  }
-  EXPECT_LT(std::sqrt(difference / moved), 0.01);
+  EXPECT_LT(
+      difference_of_moves(a.snapshots[0].second, a.snapshots[1].second, b.snapshots[1].second),
+      0.01);
 }
 
 // A solve that is told to stop leaves the run as it was, and the run goes on to the same bits.
@@ -234,8 +179,8 @@ TEST(Pile, NewtonStopsWhenToldTo) {
   PileSetup s = with_changes("line", "rand1");
   s.change.gravity = {9.7};
   s.change.method = "newton";
-  const auto whole = make_pile_run(s, 4, 1), stopped = make_pile_run(s, 4, 1);
-  finish(*whole);
+  const RunResult whole = finished(make_pile_run(s, 4, 1));
+  const auto stopped = make_pile_run(s, 4, 1);
   int asked = 0;
   stopped->set_watch([&](const Progress& p) {
     EXPECT_EQ(p.phase, "gravity_9.7");
@@ -244,8 +189,7 @@ TEST(Pile, NewtonStopsWhenToldTo) {
   for (int k = 0; k < 100000 && asked < 3; ++k) stopped->advance(1000);
   ASSERT_EQ(asked, 3);
   EXPECT_FALSE(stopped->done());
-  finish(*stopped);
-  EXPECT_TRUE(same(whole->result().snapshots[1].second, stopped->result().snapshots[1].second));
+  expect_same(finished(stopped), whole, "stopped");
 }
 
 }  // namespace

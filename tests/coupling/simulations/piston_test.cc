@@ -2,15 +2,13 @@
 #include "coupling/studies/point_load/piston.h"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 #include <set>
 
 #include "coupling/studies/point_load/simulation.h"
 #include "dem/shared/computation_failed.h"
-#include "tests/coupling/pile_scene.h"
+#include "tests/coupling/finished_run.h"
 #include "tests/dem/imbalance.h"
 #include "tests/refusal.h"
 
@@ -72,9 +70,7 @@ TEST(Piston, LoadsALayerWithTheForce) {
   for (const char* shape : {"disk", "regular"}) {
     PointLoadSetup s = lattice(shape);
     s.motion.energy_balance = true;
-    const auto run = make_point_load_run(s, 3, 1);
-    finish(*run);
-    const RunResult r = run->result();
+    const RunResult r = finished(make_point_load_run(s, 3, 1));
     EXPECT_NEAR(r.figures.at("base.weight_ratio"), 1, 1e-3) << shape;
     EXPECT_NEAR(r.figures.at("base.response_over_load"), 1, 1e-2) << shape;
     const Snapshot& loaded = r.snapshots[1].second;
@@ -97,53 +93,36 @@ TEST(Piston, LeavesTheLayerAsTheRampDoes) {
   s.rest.unbalanced_force_ratio = 1e-7;
   s.rest.kinetic_to_elastic_energy = 1e-12;
   s.load.speed = 1e-5;
-  const auto piston = make_point_load_run(s, 5, 1);
-  finish(*piston);
+  const RunResult a = finished(make_point_load_run(s, 5, 1));
   s.load.control = "force";
-  const auto ramp = make_point_load_run(s, 5, 1);
-  finish(*ramp);
-  const RunResult a = piston->result(), b = ramp->result();
+  const RunResult b = finished(make_point_load_run(s, 5, 1));
   EXPECT_EQ(b.figures.count("load.time"), 0u);
   ASSERT_TRUE(same(a.snapshots[0].second, b.snapshots[0].second));
-  double moved = 0, difference = 0;
-  for (std::size_t k = 0; k < a.snapshots[0].second.grains.size(); ++k) {
-    const Vec3 from = a.snapshots[0].second.grains[k].position,
-               to = b.snapshots[1].second.grains[k].position;
-    moved += (to - from).squaredNorm();
-    difference += (to - a.snapshots[1].second.grains[k].position).squaredNorm();
-  }
-  EXPECT_GT(moved, 0);
-  EXPECT_LT(std::sqrt(difference / moved), 0.02);
+  EXPECT_LT(
+      difference_of_moves(a.snapshots[0].second, b.snapshots[1].second, a.snapshots[1].second),
+      0.02);
 }
 
 TEST(Piston, ResumesToTheSameBitsWhileItComesDown) {
-  const std::string file = (std::filesystem::temp_directory_path() /
-                            ("grainfield_piston_" + std::to_string(getpid()) + ".h5"))
-                               .string();
+  const FileOfRun file("piston");
   for (const char* shape : {"disk", "regular"}) {
     PointLoadSetup s = lattice(shape);
     s.load.speed = 1e-3;
-    const auto whole = make_point_load_run(s, 9, 1), first = make_point_load_run(s, 9, 1),
-               second = make_point_load_run(s, 9, 2);
-    finish(*whole);
+    const RunResult expected = finished(make_point_load_run(s, 9, 1));
+    const auto first = make_point_load_run(s, 9, 1), second = make_point_load_run(s, 9, 2);
     while (first->progress().phase != "load") first->advance(50);
     first->advance(57);
     ASSERT_EQ(first->progress().phase, "load") << shape;
-    first->save(file);
-    second->restore(file);
-    finish(*second);
-    const RunResult got = second->result(), expected = whole->result();
-    EXPECT_TRUE(same(got.snapshots[1].second, expected.snapshots[1].second)) << shape;
-    EXPECT_EQ(got.figures, expected.figures) << shape;
+    first->save(file.path());
+    second->restore(file.path());
+    expect_same(finished(second), expected, shape);
     // Back to a moment before the load: the piston goes.
     const auto early = make_point_load_run(s, 9, 1);
     early->advance(10);
-    early->save(file);
-    first->restore(file);
-    finish(*first);
-    EXPECT_EQ(first->result().figures, expected.figures) << shape;
+    early->save(file.path());
+    first->restore(file.path());
+    expect_same(finished(first), expected, shape);
   }
-  std::filesystem::remove(file);
 }
 
 TEST(Piston, SaysWhenTheLayerDoesNotResist) {
@@ -151,14 +130,9 @@ TEST(Piston, SaysWhenTheLayerDoesNotResist) {
   s.load.force = 300;
   s.load.speed = 1e-6;
   s.rest.max_time = 3;
-  const auto run = make_point_load_run(s, 1, 1);
-  try {
-    finish(*run);
-    FAIL() << "no exception";
-  } catch (const ComputationFailed& failure) {
-    EXPECT_THAT(failure.what(), testing::HasSubstr("the piston meets "));
-    EXPECT_THAT(failure.what(), testing::HasSubstr("load.speed"));
-  }
+  const std::string said = failure_of(make_point_load_run(s, 1, 1));
+  EXPECT_THAT(said, testing::HasSubstr("the piston meets "));
+  EXPECT_THAT(said, testing::HasSubstr("load.speed"));
 }
 
 std::string refusal(const PointLoadSetup& s) {
@@ -222,9 +196,7 @@ TEST(RegularPolygons, FallInRows) {
   s.packing.depth = 0.02;
   s.rest.unbalanced_force_ratio = 1e-4;
   s.rest.kinetic_to_elastic_energy = 1e-6;
-  const auto run = make_point_load_run(s, 4, 1);
-  finish(*run);
-  const RunResult r = run->result();
+  const RunResult r = finished(make_point_load_run(s, 4, 1));
   EXPECT_NEAR(r.figures.at("base.weight_ratio"), 1, 1e-3);
   EXPECT_NEAR(r.figures.at("base.response_over_load"), 1, 2e-2);
   std::set<double> radii;

@@ -1,13 +1,12 @@
 // The point-load run: balance, restart to the same bits, and what it refuses.
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <filesystem>
 
 #include "coupling/studies/point_load/simulation.h"
 #include "dem/grains/packing.h"
 #include "dem/snapshot/contact_changes.h"
-#include "tests/coupling/pile_scene.h"
+#include "tests/coupling/finished_run.h"
 #include "tests/dem/imbalance.h"
 #include "tests/refusal.h"
 
@@ -32,9 +31,7 @@ TEST(PointLoad, BaseCarriesWeightAndLoad) {
     for (const char* floor : {"smooth", "rough"}) {
       PointLoadSetup s = small(kind);
       s.packing.floor = floor;
-      const auto run = make_point_load_run(s, 3, 1);
-      finish(*run);
-      const RunResult r = run->result();
+      const RunResult r = finished(make_point_load_run(s, 3, 1));
       EXPECT_NEAR(r.figures.at("base.weight_ratio"), 1, 1e-4) << kind << " " << floor;
       EXPECT_NEAR(r.figures.at("base.response_over_load"), 1, 1e-2) << kind << " " << floor;
       ASSERT_EQ(r.snapshots.size(), 2u);
@@ -59,9 +56,7 @@ TEST(PointLoad, LayersOfPentagonsCarryWeightAndLoad) {
   for (const char* floor : {"smooth", "rough"}) {
     PointLoadSetup s = pentagons();
     s.packing.floor = floor;
-    const auto run = make_point_load_run(s, 4, 1);
-    finish(*run);
-    const RunResult r = run->result();
+    const RunResult r = finished(make_point_load_run(s, 4, 1));
     EXPECT_NEAR(r.figures.at("base.weight_ratio"), 1, 1e-3) << floor;
     EXPECT_NEAR(r.figures.at("base.response_over_load"), 1, 2e-2) << floor;
     for (const Grain& g : r.snapshots[0].second.grains) EXPECT_EQ(g.outline.size(), 5u);
@@ -71,9 +66,7 @@ TEST(PointLoad, LayersOfPentagonsCarryWeightAndLoad) {
 }
 
 TEST(PointLoad, ResumesToTheSameBitsFromAnyStep) {
-  const std::string file = (std::filesystem::temp_directory_path() /
-                            ("grainfield_run_" + std::to_string(getpid()) + ".h5"))
-                               .string();
+  const FileOfRun file("run");
   for (const bool disks : {true, false}) {
     PointLoadSetup s = disks ? small("layered") : pentagons();
     if (disks) {
@@ -81,35 +74,15 @@ TEST(PointLoad, ResumesToTheSameBitsFromAnyStep) {
       s.packing.depth = 0.02;
     }
     s.rest.unbalanced_force_ratio = 1e-3;
-    const auto whole = make_point_load_run(s, 9, 1);
-    finish(*whole);
-    const RunResult expected = whole->result();
-    const long total = static_cast<long>(expected.figures.at("dem.steps"));
+    const auto make = [&](int threads) { return make_point_load_run(s, 9, threads); };
+    const RunResult expected = finished(make(1));
     Random random(1);
-    for (int trial = 0; trial < 3; ++trial) {
-      const long stop = static_cast<long>(random.uniform() * static_cast<double>(total));
-      {
-        const auto first = make_point_load_run(s, 9, 1 + trial % 2);
-        first->advance(stop);
-        first->save(file);
-      }
-      const auto second = make_point_load_run(s, 9, 2 - trial % 2);
-      second->restore(file);
-      finish(*second);
-      const RunResult got = second->result();
-      EXPECT_TRUE(same(got.snapshots[0].second, expected.snapshots[0].second))
-          << "stopped at " << stop;
-      EXPECT_TRUE(same(got.snapshots[1].second, expected.snapshots[1].second))
-          << "stopped at " << stop;
-      EXPECT_EQ(got.figures, expected.figures);
-    }
+    expect_same_after_stops(make, expected, expected.figures.at("dem.steps"), 3, file, random);
     const auto other = make_point_load_run(s, 10, 1);
-    EXPECT_THROW(other->restore(file), std::invalid_argument);
-    std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
-    const auto again = make_point_load_run(s, 9, 1);
-    EXPECT_THROW(again->restore(file), std::invalid_argument);
+    EXPECT_THROW(other->restore(file.path()), std::invalid_argument);
+    std::filesystem::resize_file(file.path(), std::filesystem::file_size(file.path()) / 2);
+    EXPECT_THROW(make(1)->restore(file.path()), std::invalid_argument);
   }
-  std::filesystem::remove(file);
 }
 
 // A small force: both ways to apply it move the grains alike, and Newton's is exact to its ratio.
@@ -120,12 +93,10 @@ TEST(PointLoad, NewtonAgreesWithDampedDynamics) {
     s.rest.unbalanced_force_ratio = 1e-7;
     s.rest.kinetic_to_elastic_energy = 1e-12;
     s.load.force = 0.2;
-    const auto damped = make_point_load_run(s, 5, 1);
-    finish(*damped);
+    const RunResult a = finished(make_point_load_run(s, 5, 1));
     s.load.method = "newton";
-    const auto newton = make_point_load_run(s, 5, 1), stopped = make_point_load_run(s, 5, 1);
-    finish(*newton);
-    const RunResult a = damped->result(), b = newton->result();
+    const auto stopped = make_point_load_run(s, 5, 1);
+    const RunResult b = finished(make_point_load_run(s, 5, 1));
     ASSERT_TRUE(same(a.snapshots[0].second, b.snapshots[0].second));
     ASSERT_EQ(a.figures.at("load.no_rearrangement"), 1) << disks;
     EXPECT_EQ(b.figures.at("load.no_rearrangement"), 1) << disks;
@@ -148,29 +119,21 @@ TEST(PointLoad, NewtonAgreesWithDampedDynamics) {
     EXPECT_EQ(b.snapshots[1].second.attributes.at("state"), "loaded");
     EXPECT_EQ(b.snapshots[1].second.loaded_grain, a.snapshots[1].second.loaded_grain);
     EXPECT_EQ(b.snapshots[1].second.applied_force.y(), -0.2);
-    double moved = 0, difference = 0;
-    for (std::size_t k = 0; k < a.snapshots[0].second.grains.size(); ++k) {
-      const Vec3 from = a.snapshots[0].second.grains[k].position,
-                 to = a.snapshots[1].second.grains[k].position;
-      moved += (to - from).squaredNorm();
-      difference += (to - b.snapshots[1].second.grains[k].position).squaredNorm();
-    }
-    EXPECT_LT(std::sqrt(difference / moved), 0.01) << disks;
+    EXPECT_LT(
+        difference_of_moves(a.snapshots[0].second, a.snapshots[1].second, b.snapshots[1].second),
+        0.01)
+        << disks;
 
     // Told to stop it stays as it was; and so it goes on from a checkpoint.
     stopped->set_watch([](const Progress& p) { return p.phase != "load"; });
     for (int k = 0; k < 10000 && stopped->progress().phase != "load"; ++k) stopped->advance(1000);
     stopped->advance(1000);
     ASSERT_FALSE(stopped->done());
-    const std::string file = (std::filesystem::temp_directory_path() /
-                              ("grainfield_newton_" + std::to_string(getpid()) + ".h5"))
-                                 .string();
-    stopped->save(file);
+    const FileOfRun file("newton");
+    stopped->save(file.path());
     const auto resumed = make_point_load_run(s, 5, 1);
-    resumed->restore(file);
-    std::filesystem::remove(file);
-    finish(*resumed);
-    EXPECT_TRUE(same(resumed->result().snapshots[1].second, b.snapshots[1].second));
+    resumed->restore(file.path());
+    expect_same(finished(resumed), b, "resumed");
   }
 }
 
@@ -183,20 +146,13 @@ TEST(PointLoad, ComesToRestByNewtonsMethod) {
     s.rest.unbalanced_force_ratio = 1e-7;
     s.rest.kinetic_to_elastic_energy = 1e-6;
     s.load.force = 0.2;
-    const auto damped = make_point_load_run(s, 5, 1);
-    finish(*damped);
+    const RunResult a = finished(make_point_load_run(s, 5, 1));
     s.load.rest = "newton";
-    const auto newton = make_point_load_run(s, 5, 1), other = make_point_load_run(s, 5, 2);
-    finish(*newton);
-    finish(*other);
-    const RunResult a = damped->result(), b = newton->result();
+    const RunResult b = finished(make_point_load_run(s, 5, 1));
     ASSERT_EQ(b.figures.at("rest.by_newton"), 1) << disks;
     EXPECT_EQ(a.figures.count("rest.by_newton"), 0u);
-    EXPECT_EQ(other->result().figures, b.figures);
-    for (std::size_t k : {0u, 1u}) {
-      EXPECT_TRUE(same(other->result().snapshots[k].second, b.snapshots[k].second)) << k;
-      expect_balanced(b.snapshots[k].second, 1e-7);
-    }
+    expect_same(finished(make_point_load_run(s, 5, 2)), b, "on two threads");
+    for (const auto& [name, state] : b.snapshots) expect_balanced(state, 1e-7, name);
     EXPECT_LE(b.figures.at("rest.unbalanced_force_ratio"), 1e-8);
     EXPECT_GE(b.figures.at("rest.iterations"), 1);
     EXPECT_LT(b.figures.at("dem.steps"), a.figures.at("dem.steps"));
@@ -214,23 +170,16 @@ TEST(PointLoad, ComesToRestByNewtonsMethod) {
     });
     for (int k = 0; k < 10000 && asked < 2; ++k) stopped->advance(1000);
     ASSERT_EQ(asked, 2);
-    const std::string file = (std::filesystem::temp_directory_path() /
-                              ("grainfield_rest_" + std::to_string(getpid()) + ".h5"))
-                                 .string();
-    stopped->save(file);
+    const FileOfRun file("rest");
+    stopped->save(file.path());
     const auto resumed = make_point_load_run(s, 5, 2);
-    resumed->restore(file);
+    resumed->restore(file.path());
     for (int k = 0; k < 3; ++k) {  // and again while the load grows
       resumed->advance(150);
-      resumed->save(file);
-      resumed->restore(file);
+      resumed->save(file.path());
+      resumed->restore(file.path());
     }
-    std::filesystem::remove(file);
-    finish(*resumed);
-    EXPECT_EQ(resumed->result().figures, b.figures);
-    for (std::size_t k : {0u, 1u}) {
-      EXPECT_TRUE(same(resumed->result().snapshots[k].second, b.snapshots[k].second)) << k;
-    }
+    expect_same(finished(resumed), b, "resumed");
   }
 }
 
@@ -239,8 +188,7 @@ TEST(PointLoad, RestsByDampedDynamicsWhereNewtonsMethodFails) {
   PointLoadSetup s = small("layered");
   s.rest.kinetic_to_elastic_energy = 1e3;
   s.load.force = 0.2;
-  const auto damped = make_point_load_run(s, 5, 1);
-  finish(*damped);
+  const RunResult a = finished(make_point_load_run(s, 5, 1));
   s.load.rest = "newton";
   const auto newton = make_point_load_run(s, 5, 1);
   std::string phases;
@@ -248,15 +196,11 @@ TEST(PointLoad, RestsByDampedDynamicsWhereNewtonsMethodFails) {
     newton->advance(200);
     phases += newton->progress().phase + ";";
   }
-  const RunResult a = damped->result();
   RunResult b = newton->result();
   EXPECT_THAT(phases, testing::HasSubstr("rest (Newton's method failed);"));
   EXPECT_EQ(b.figures.at("rest.by_newton"), 0);
   b.figures.erase("rest.by_newton");
-  EXPECT_EQ(a.figures, b.figures);
-  for (std::size_t k : {0u, 1u}) {
-    EXPECT_TRUE(same(a.snapshots[k].second, b.snapshots[k].second)) << k;
-  }
+  expect_same(b, a, "damped");
 }
 
 std::string refusal(const PointLoadSetup& s) {
@@ -295,13 +239,7 @@ TEST(PointLoad, RefusesWhatCannotBe) {
 TEST(PointLoad, SaysWhenItDoesNotComeToRest) {
   PointLoadSetup s = small("triangular");
   s.rest.max_time = 0.01;
-  const auto run = make_point_load_run(s, 1, 1);
-  try {
-    finish(*run);
-    FAIL() << "no exception";
-  } catch (const ComputationFailed& failure) {
-    EXPECT_THAT(failure.what(), testing::HasSubstr("rest.max_time"));
-  }
+  EXPECT_THAT(failure_of(make_point_load_run(s, 1, 1)), testing::HasSubstr("rest.max_time"));
 }
 
 TEST(Packing, LatticesTouchWithoutOverlap) {

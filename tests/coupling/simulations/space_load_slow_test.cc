@@ -1,17 +1,15 @@
 // A point load on layers of spheres: where they start, balance, linearity, restart to the same
 // bits, and what is refused.
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "coupling/studies/point_load/layer.h"
 #include "coupling/studies/point_load/simulation.h"
 #include "dem/grains/layer_3d.h"
 #include "dem/run/outlook.h"
 #include "dem/snapshot/contact_changes.h"
-#include "tests/coupling/pile_scene.h"
+#include "tests/coupling/finished_run.h"
 #include "tests/dem/imbalance.h"
 #include "tests/refusal.h"
 
@@ -41,9 +39,7 @@ PointLoadSetup spheres(const std::string& kind) {
 }
 
 RunResult result_of(const PointLoadSetup& s, std::uint64_t seed = 3, int threads = 1) {
-  const auto run = make_point_load_run(s, seed, threads);
-  finish(*run);
-  return run->result();
+  return finished(make_point_load_run(s, seed, threads));
 }
 
 TEST(SpaceLoad, BaseCarriesWeightAndLoad) {
@@ -190,12 +186,9 @@ TEST(SpaceLoad, ADiskOfGrainsSharesTheForce) {
     EXPECT_LT(way.z(), 0);
   }
   // Written and read again, and an engine goes on from it.
-  const std::string file = (std::filesystem::temp_directory_path() /
-                            ("grainfield_disk_" + std::to_string(getpid()) + ".h5"))
-                               .string();
-  write_snapshot(file, "/loaded", loaded);
-  EXPECT_EQ(read_snapshot(file, "/loaded").also_loaded, loaded.also_loaded);
-  std::filesystem::remove(file);
+  const FileOfRun file("disk");
+  write_snapshot(file.path(), "/loaded", loaded);
+  EXPECT_EQ(read_snapshot(file.path(), "/loaded").also_loaded, loaded.also_loaded);
   const auto engine = make_engine(Layer<3>::settings(s, {}, 1), loaded);
   engine->step(1);
   EXPECT_LT(engine->measure().unbalanced_force_ratio, 1e-5);
@@ -226,33 +219,16 @@ TEST(SpaceLoad, ResponseIsLinearWithoutRearrangement) {
 }
 
 TEST(SpaceLoad, ResumesToTheSameBitsOnAnyThreads) {
-  const std::string file = (std::filesystem::temp_directory_path() /
-                            ("grainfield_space_load_" + std::to_string(getpid()) + ".h5"))
-                               .string();
+  const FileOfRun file("space_load");
   PointLoadSetup s = spheres("random");
   s.packing.floor = "rough";
   s.rest.unbalanced_force_ratio = 1e-4;
-  const RunResult expected = result_of(s, 9, 1);
-  const double total = expected.figures.at("dem.steps");
+  const auto make = [&](int threads) { return make_point_load_run(s, 9, threads); };
+  const RunResult expected = finished(make(1));
   Random random(1);
-  for (int trial = 0; trial < 4; ++trial) {
-    const long stop = static_cast<long>(random.uniform() * total);
-    {
-      const auto first = make_point_load_run(s, 9, 1 + trial % 2);
-      first->advance(stop);
-      first->save(file);
-    }
-    const auto second = make_point_load_run(s, 9, 2 - trial % 2);
-    second->restore(file);
-    finish(*second);
-    const RunResult got = second->result();
-    EXPECT_TRUE(same(got.snapshots[0].second, expected.snapshots[0].second)) << stop;
-    EXPECT_TRUE(same(got.snapshots[1].second, expected.snapshots[1].second)) << stop;
-    EXPECT_EQ(got.figures, expected.figures);
-  }
+  expect_same_after_stops(make, expected, expected.figures.at("dem.steps"), 4, file, random);
   const auto other = make_point_load_run(s, 10, 1);
-  EXPECT_THROW(other->restore(file), std::invalid_argument);
-  std::filesystem::remove(file);
+  EXPECT_THROW(other->restore(file.path()), std::invalid_argument);
 }
 
 std::string refusal(const PointLoadSetup& s) {

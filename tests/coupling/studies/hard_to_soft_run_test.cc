@@ -7,6 +7,7 @@
 
 #include "coupling/result/tables.h"
 #include "coupling/run/summary_keys.h"
+#include "coupling/studies/hard_to_soft/simulation.h"
 #include "dem/snapshot/snapshot.h"
 #include "tests/coupling/check_scene.h"
 #include "tests/coupling/program.h"
@@ -55,6 +56,19 @@ TEST(HardToSoftRun, RestsSoftAndClosesItsBalance) {
   const std::string page = testing::read_text(folder / "out/report.html");
   EXPECT_THAT(page, HasSubstr("Soft grains, t = "));
   EXPECT_THAT(page, HasSubstr("Network of forces"));
+}
+
+// Time steps take longer the more disks there are.
+TEST(HardToSoftRun, HalfOfADropIsAQuarterOfItsWork) {
+  dem::HardToSoftSetup setup;
+  setup.source = "drop";
+  setup.grains = 8;
+  setup.max_time = 1;
+  const auto run = dem::make_hard_to_soft_run(setup, 1);
+  const double half = 0.5 * setup.drop_time();
+  while (run->progress().simulated_time < half) run->advance(1);
+  EXPECT_NEAR(setup.drop_time() / setup.time_unit(), 24, 1e-9);
+  EXPECT_NEAR(run->progress().fraction, 3.0 / 13, 2e-3);
 }
 
 // Contents of all outputs: on one thread and on three, and after stops.
