@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "dem/engine/engine.h"
+#include "dem/quasistatic/linear_range.h"
 #include "dem/quasistatic/quasistatic.h"
 #include "dem/quasistatic/small_loads.h"
 #include "dem/quasistatic/strains.h"
@@ -65,10 +66,10 @@ TEST(SuperellipsoidRelaxation, ABodyUnderItsWeightSinksAsTheLawSays) {
 // Ellipsoids side by side along their axes are springs in line, whatever their curvatures.
 TEST(SuperellipsoidRelaxation, ALatticeOfEllipsoidsHasItsModuli) {
   const double k = 1e4, share = 1 - 1e-3;
-  const std::array<double, 3> axes{1.4 * kRadius, kRadius, 0.7 * kRadius};
+  const std::array<double, 3> axes{1.2 * kRadius, kRadius, 0.8 * kRadius};
   EngineSettings e = shaped(PenaltyLaw{k, k, 0}, 0.5);
   e.gravity_z = 0;
-  constexpr int kSide = 3;
+  constexpr int kSide = 4;
   const Vec3 edge = 2 * share * Vec3(axes[0], axes[1], axes[2]);
   e.cell.periodic = {true, true, true};
   e.cell.edges = (kSide * edge).asDiagonal();
@@ -163,15 +164,15 @@ AppliedForce on(std::int64_t id, const Vec3& force) {
   return out;
 }
 
-/// Half the difference of two states, from the linear response; over the largest displacement.
+/// Half the difference of two states, from the linear response: root mean squares, over that.
 double apart_from(const SmallResponse& linear, const Snapshot& with, const Snapshot& against) {
-  double most = 0, apart = 0;
+  double all = 0, apart = 0;
   for (std::size_t k = 0; k < linear.moved.size(); ++k) {
     const Vec3 moved = 0.5 * (with.grains[k].position - against.grains[k].position);
-    most = std::max(most, moved.norm());
-    apart = std::max(apart, (moved - linear.moved[k]).norm());
+    all += linear.moved[k].squaredNorm();
+    apart += (moved - linear.moved[k]).squaredNorm();
   }
-  return apart / most;
+  return std::sqrt(apart / all);
 }
 
 class LinearResponseOfSuperellipsoids : public ::testing::TestWithParam<bool> {
@@ -179,7 +180,7 @@ class LinearResponseOfSuperellipsoids : public ::testing::TestWithParam<bool> {
   // Laws whose springs know no branch between loading and unloading.
   static const Packing& packing(bool hertz) {
     static const Packing linear = dropped(PenaltyLaw{500, 250, 0.5});
-    static const Packing elliptic = dropped(HertzEllipticLaw{5e6, 0.3, 0.5, true});
+    static const Packing elliptic = dropped(HertzEllipticLaw{1e6, 0.3, 0.5, true});
     return hertz ? elliptic : linear;
   }
 };
@@ -201,8 +202,18 @@ TEST_P(LinearResponseOfSuperellipsoids, IsThatOfNewtonsMethod) {
 // A small load applied in the step loop, slowly, and damped until it rests.
 TEST_P(LinearResponseOfSuperellipsoids, IsThatOfDampedDynamics) {
   const Packing& p = packing(GetParam());
-  const Vec3 force(0, 0, -0.01 * p.mean_weight());
   SmallLoads loads(p.rest, p.settings);
+  // A tenth of what changes the first contact.
+  const Vec3 some(0, 0, -0.01 * p.mean_weight());
+  const SmallResponse of_some = loads.response({p.top}, some);
+  Snapshot upwards = of_some.change;
+  for (Contact& c : upwards.contacts) {
+    c.force *= -1;
+    c.normal_force *= -1;
+  }
+  const double first = std::min(linear_range(loads.start(), of_some.change).changed(0),
+                                linear_range(loads.start(), upwards).changed(0));
+  const Vec3 force = std::min(1.0, 0.1 * first) * some;
   const SmallResponse linear = loads.response({p.top}, force);
   Snapshot states[2];
   for (int side = 0; side < 2; ++side) {
@@ -214,16 +225,19 @@ TEST_P(LinearResponseOfSuperellipsoids, IsThatOfDampedDynamics) {
       engine->apply(on(p.top, (side == 0 ? 1 : -1) * share * share * (3 - 2 * share) * force));
       engine->step(40);
     }
-    come_to_rest(*engine, 1e-9);
+    come_to_rest(*engine, 1e-10);
     states[side] = engine->snapshot();
+    const ContactChanges changes = compare_contacts(p.rest, states[side]);
+    EXPECT_EQ(changes.gained + changes.lost + changes.newly_sliding, 0);
   }
   const double apart = apart_from(linear, states[0], states[1]);
-  std::printf("damped dynamics is apart from the linear response by %.1e\n", apart);
+  std::printf("a load of %.1e weights: damped dynamics is apart from the linear response by %.1e\n",
+              -force.z() / p.mean_weight(), apart);
   EXPECT_LT(apart, 0.01);
 }
 
 // What one grain settles under a load on another, and the other under the same load on the one:
-// equal but for what springs and the law's curvatures take of symmetry.
+// equal but for what springs take of symmetry, and that Hertz' force of curvatures is no gradient.
 TEST_P(LinearResponseOfSuperellipsoids, IsReciprocalButForFriction) {
   const Packing& p = packing(GetParam());
   SmallLoads loads(p.rest, p.settings);
@@ -241,7 +255,7 @@ TEST_P(LinearResponseOfSuperellipsoids, IsReciprocalButForFriction) {
     worst = std::max(worst, std::fabs(one - two) / own);
   }
   std::printf("reciprocal to %.1e\n", worst);
-  EXPECT_LT(worst, 0.02);
+  EXPECT_LT(worst, GetParam() ? 0.1 : 0.01);
 }
 
 INSTANTIATE_TEST_SUITE_P(, LinearResponseOfSuperellipsoids, ::testing::Bool(),
