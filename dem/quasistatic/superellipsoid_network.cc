@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
-#include "dem/engine/engine.h"
 #include "dem/quasistatic/sphere_contact.h"
 #include "dem/space/elementary.h"
 #include "dem/space/kinematics3.h"
@@ -33,7 +33,11 @@ Eigen::Matrix3d turned(const RotationOf<3>& committed, const Vec3& turn) {
 
 SuperellipsoidContacts::SuperellipsoidContacts(const Snapshot& start, const Materials& materials)
     : law_(materials.law) {
-  if (materials.rolling.on()) refuse_rolling_superellipsoids();
+  if (materials.rolling.on()) {
+    throw std::invalid_argument(
+        "quasi-static relaxation of superellipsoids: found resistance against rolling "
+        "(material.rolling_friction or twisting_friction above 0), allowed: none");
+  }
   for (const Grain& g : start.grains) {
     Shape& s = shapes_.emplace_back();
     s.body = superellipsoid({g.axes[0], g.axes[1], g.axes[2]}, g.exponents);
