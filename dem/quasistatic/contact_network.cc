@@ -5,13 +5,15 @@
 
 #include "dem/quasistatic/plane_network.h"
 #include "dem/quasistatic/sphere_network.h"
+#include "dem/quasistatic/superellipsoid_network.h"
 
 namespace grainfield::dem {
 
 std::unique_ptr<ContactNetwork> make_contact_network(const Snapshot& start,
                                                      const Materials& materials) {
   if (start.dim == 2) return std::make_unique<PlaneNetwork>(start, materials);
-  return std::make_unique<SphereNetwork>(start, materials);
+  if (start.grains.front().axes.isZero(0)) return std::make_unique<SphereNetwork>(start, materials);
+  return std::make_unique<SuperellipsoidNetwork>(start, materials);
 }
 
 std::unique_ptr<ContactNetwork> ContactNetwork::part(const std::vector<int>& /*free*/) const {

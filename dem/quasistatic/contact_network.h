@@ -1,5 +1,5 @@
 // The forces of a packing as functions of displacements, and their derivatives: what equilibrium is
-// sought with. plane_network.h has disks and polygons, sphere_network.h spheres.
+// sought with. plane_network.h has disks and polygons, space_network.h what there is in space.
 //
 // Unknowns z: for each free grain displacement over its radius r, and rotation, since the last
 // committed state: (u_x/r, u_y/r, theta) in the plane, (u/r, theta) with three each in space.

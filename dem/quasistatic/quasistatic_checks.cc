@@ -60,11 +60,11 @@ void check_start(const Snapshot& s) {
           "quasi-static relaxation: found that grain {} does not turn, allowed: grains that do",
           g.id));
     }
-    if (!g.axes.isZero(0)) {
-      throw std::invalid_argument(fmt::format(
-          "quasi-static relaxation: found that grain {} is a superellipsoid, allowed: disks, "
-          "polygons, spheres; choose method = \"damped\"",
-          g.id));
+    if (g.axes.isZero(0) != s.grains.front().axes.isZero(0)) {
+      throw std::invalid_argument(
+          fmt::format("quasi-static relaxation: found that of the grains {} and {} one is a "
+                      "superellipsoid, allowed: all or none",
+                      s.grains.front().id, g.id));
     }
     if (!(g.position.allFinite() && std::isfinite(g.angle) && g.radius > 0 &&
           (g.fixed || (g.mass > 0 && std::isfinite(g.mass))))) {

@@ -39,6 +39,7 @@ HOMOGENEOUS, BY_DEPTH = f"homogeneous_{ROUGH}", f"by_depth_{ROUGH}"
 REGIONS = {"base": "on the base", "axis": "on the axis", "all": "of all profiles"}
 AT = 0.25  # of the depth: where the axis is looked at
 RIGHT = (2, 5, 10, 20)  # %
+SPACE = ("superellipsoids", "spheres")  # shapes of the grains that variants are named by
 COLOURS = {HOMOGENEOUS: "#1a5fa8", BY_DEPTH: "#c5502f"}
 SHAPES = {"disk": "disks", "regular": "regular polygons", "irregular": "pentagons"}  # by packing.shape
 POINTS = {0.0: 6, 0.2: 4, 0.5: 7, 1.0: 9}  # gnuplot's, by friction
@@ -57,8 +58,7 @@ class Run:
         self.friction = float(given.get("material.friction", 0.5))
         self.grains = int(given.get("response.grains", 1))
         self.shape = SHAPES[given.get("packing.shape", "disk")]
-        if "spheres" in given.get("sweep.values", ""):
-            self.shape = "spheres"
+        self.shape = next((shape for shape in SPACE if shape in given.get("sweep.values", "")), self.shape)
         self.width = next((float(value) for key, value in given.items() if key.endswith("packing.width")), None)
         file = folder / f"{name}.profiles.csv"
         self.profiles = file.read_text() if file.exists() else ""

@@ -53,7 +53,7 @@ void Layer<3>::check(const Setup& s) {
     if (!angular || method != "newton") continue;
     throw std::invalid_argument(
         fmt::format("{}: found \"newton\" with packing.shape = \"superellipsoid\", allowed: "
-                    "\"damped\" (the quasi-static solver knows spheres)",
+                    "\"damped\" (newton ends rests and loads of spheres)",
                     key));
   }
   if (s.load.probe_strain > 0) {

@@ -123,10 +123,10 @@ TEST(BoussinesqLimitRun, RefusesWhatLinearResponseDoesNotKnow) {
     EXPECT_EQ(out.code, 2) << out.err;
     return out.err;
   };
-  EXPECT_THAT(
-      refusal("--set packing.dim=3 --set packing.kind=random --set packing.shape=superellipsoid"
-              " --set material.law=hertz_elliptic --set load.method=damped"),
-      HasSubstr("packing.shape"));
+  EXPECT_THAT(refusal("--set packing.dim=3 --set packing.kind=random --set packing.sides=walls"
+                      " --set packing.shape=superellipsoid --set material.law=hertz_elliptic"
+                      " --set load.method=damped"),
+              HasSubstr("packing.sides"));
   EXPECT_THAT(refusal("--set average.map_columns=9"), HasSubstr("map_columns"));
 }
 
