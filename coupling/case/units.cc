@@ -43,8 +43,10 @@ std::string with_point(std::string text) {
       text.find_first_of(digits, comma) != comma + 1) {
     return "";
   }
+  const bool thousands = text.size() == comma + 4;
+  const std::string whole = text.substr(0, comma) + text.substr(comma + 1);
   text[comma] = '.';
-  if (parse_number(text)) return text;
+  if (parse_number(text)) return thousands ? text + " or " + whole : text;
   return parse_measure(text) ? toml_text(text) : "";
 }
 

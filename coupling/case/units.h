@@ -19,7 +19,7 @@ struct Measure {
 std::optional<Measure> parse_measure(const std::string& text);
 
 /// A number with a decimal comma as it is to be written: 0.5 for "0,5", "3.6 mm" with its quotes
-/// for "3,6 mm"; empty for any other text.
+/// for "3,6 mm", 1.000 or 1000 for "1,000"; empty for any other text.
 std::string with_point(std::string text);
 
 /// The kinds of a key's unit: "kg/m2 (3D: kg/m3)" has one for the plane and one for space; other

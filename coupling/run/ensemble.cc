@@ -73,13 +73,19 @@ dem::CannotReadNow kept_as_it_is(const dem::CannotReadNow& error) {
                   error.what()));
 }
 
+std::vector<std::size_t> kinds_of(const std::vector<Task>& tasks) {
+  std::vector<std::size_t> out;
+  for (const Task& task : tasks) out.push_back(task.kind);
+  return out;
+}
+
 class Worker {
  public:
   Worker(const std::vector<Task>& tasks, const EnsembleOptions& options)
       : tasks_(tasks),
         options_(options),
         states_(tasks.size()),
-        left_(tasks.size()),
+        left_(kinds_of(tasks)),
         errors_(tasks.size()) {}
 
   // Takes the tasks of `mine` one after another until none is left or one failed or was stopped.

@@ -24,7 +24,8 @@ std::vector<std::uint64_t> realization_seeds(const Case& value);
 struct Task {
   /// The simulation at its beginning; its bits do not depend on the threads.
   std::function<std::unique_ptr<dem::Run>(int threads)> make;
-  std::string file;  ///< where its result goes; beside it FILE.checkpoint while it runs
+  std::string file;      ///< where its result goes; beside it FILE.checkpoint while it runs
+  std::size_t kind = 0;  ///< tasks of one kind need about the same time for the same part
 };
 
 struct EnsembleProgress {

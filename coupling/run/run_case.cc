@@ -252,7 +252,7 @@ double simulate(const std::vector<SweepCase>& members, const Workplace& place, c
     for (std::int64_t r = 0; r < value.ensemble.realizations; ++r) {
       tasks.push_back(
           {[&study, &value, r](int threads) { return study.make_run(value, r, threads); },
-           member_file(place, member.suffix, r)});
+           member_file(place, member.suffix, r), static_cast<std::size_t>(&member - &members[0])});
     }
   }
   const auto start = Clock::now();

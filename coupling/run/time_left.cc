@@ -7,10 +7,10 @@
 namespace grainfield::coupling {
 namespace {
 
-// Done of a task before anything is told.
+// No estimate before this share of a task is done.
 constexpr double kLeast = 0.01;
-// Of the time so far: what came last tells of what comes next. Fewer parts may hold a standstill.
-constexpr double kRecent = 1.0 / 3, kFewest = 5;
+// Share of the time so far that tells of what comes next.
+constexpr double kRecent = 1.0 / 3;
 // A part that is done, but for rounding.
 constexpr double kWhole = 1 - 1e-9;
 
@@ -30,46 +30,68 @@ double total_of(const auto& values) { return std::accumulate(values.begin(), val
 
 }  // namespace
 
+TimeLeft::TimeLeft(const std::vector<std::size_t>& kinds) : tasks_(kinds.size()) {
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    tasks_[k].kind = kinds[k];
+    passed_.resize(std::max(passed_.size(), kinds[k] + 1));
+  }
+}
+
 void TimeLeft::tell(std::size_t task, double seconds, double fraction) {
   Reached& last = tasks_[task];
   fraction = std::clamp(fraction, 0.0, 1.0);
   if (!last.begun) {
-    last = {true, seconds, fraction};
+    last = {true, seconds, fraction, last.kind};
     return;
   }
   if (!(fraction > last.fraction)) return;
   const double each = (seconds - last.seconds) / ((fraction - last.fraction) * kParts);
+  Passed& passed = passed_[last.kind];
   for_parts(kParts, last.fraction, fraction, [&](std::size_t k, double share) {
-    took_[k] += share * each;
-    done_[k] += share;
+    passed.took[k] += share * each;
+    passed.done[k] += share;
   });
-  last = {true, seconds, fraction};
+  last.seconds = seconds;
+  last.fraction = fraction;
 }
 
-// s that each part takes. One that no task has passed from end to end counts as unknown: after a
-// standstill its first bit would make it last for hours.
-std::array<double, TimeLeft::kParts> TimeLeft::paces() const {
-  const double all = total_of(took_);
-  double took = 0, done = 0;
-  for (std::size_t k = kParts; k-- > 0 && (took < kRecent * all || done < kFewest);) {
-    took += took_[k];
-    done += done_[k];
+TimeLeft::Passed TimeLeft::all_kinds() const {
+  Passed out;
+  for (const Passed& one : passed_) {
+    for (std::size_t k = 0; k < kParts; ++k) {
+      out.took[k] += one.took[k];
+      out.done[k] += one.done[k];
+    }
   }
-  const double unknown = std::max(all / total_of(done_), took / done);
-  std::array<double, kParts> out{};
-  for (std::size_t k = 0; k < kParts; ++k)
-    out[k] = done_[k] >= kWhole ? took_[k] / done_[k] : unknown;
+  return out;
+}
+
+// s that each part takes. After a standstill the first bit of a part would make it last for hours.
+TimeLeft::Parts TimeLeft::paces(const Passed& passed) {
+  const double all = total_of(passed.took);
+  double took = 0, done = 0;
+  for (std::size_t k = kParts; k-- > 0 && took < kRecent * all;) {
+    took += passed.took[k];
+    done += passed.done[k];
+  }
+  const double unknown = std::max(all / total_of(passed.done), done > 0 ? took / done : 0.0);
+  Parts out{};
+  for (std::size_t k = 0; k < kParts; ++k) {
+    out[k] = passed.done[k] >= kWhole ? passed.took[k] / passed.done[k] : unknown;
+  }
   return out;
 }
 
 double TimeLeft::left(const std::vector<std::size_t>& mine, int workers) const {
-  if (total_of(done_) <= kLeast * kParts * static_cast<double>(mine.size())) return -1;
-  const auto pace = paces();
+  const Passed any = all_kinds();
+  if (total_of(any.done) <= kLeast * kParts * static_cast<double>(mine.size())) return -1;
+  std::vector<Parts> pace;
+  for (const Passed& one : passed_) pace.push_back(paces(total_of(one.done) > 0 ? one : any));
   double all = 0, longest = 0;
   for (const std::size_t task : mine) {
     double one = 0;
     for_parts(kParts, tasks_[task].fraction, 1,
-              [&](std::size_t k, double share) { one += share * pace[k]; });
+              [&](std::size_t k, double share) { one += share * pace[tasks_[task].kind][k]; });
     all += one;
     longest = std::max(longest, one);
   }

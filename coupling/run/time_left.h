@@ -7,11 +7,13 @@
 namespace grainfield::coupling {
 
 /// Tasks of one kind need about the same time for the same part of their work: a part takes what it
-/// took the tasks that have done it. A part that none has done yet takes what the others took on
-/// average, or in the last third of the time where that was slower.
+/// took the tasks that have done it. A part that is known of less than one whole task takes what
+/// the others took on average, or in the last third of the time where that was slower. A kind of
+/// which nothing is done yet counts as all the others together.
 class TimeLeft {
  public:
-  explicit TimeLeft(std::size_t tasks) : tasks_(tasks) {}
+  /// The kind of each task.
+  explicit TimeLeft(const std::vector<std::size_t>& kinds);
 
   /// At `seconds` since the start this task has done this fraction; less than before is no news.
   void tell(std::size_t task, double seconds, double fraction);
@@ -23,12 +25,18 @@ class TimeLeft {
   struct Reached {
     bool begun = false;
     double seconds = 0, fraction = 0;
+    std::size_t kind = 0;
+  };
+  using Parts = std::array<double, kParts>;
+  struct Passed {
+    Parts took{}, done{};  // s, and parts' shares: sums over tasks
   };
 
-  std::array<double, kParts> paces() const;
+  Passed all_kinds() const;
+  static Parts paces(const Passed& passed);
 
   std::vector<Reached> tasks_;
-  std::array<double, kParts> took_{}, done_{};  ///< s, and parts' shares: sums over tasks
+  std::vector<Passed> passed_;  // by kind
 };
 
 }  // namespace grainfield::coupling

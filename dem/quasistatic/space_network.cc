@@ -16,7 +16,7 @@
 namespace grainfield::dem {
 namespace {
 
-// Gap up to which spheres that do not touch are watched, as a share of the mean radius. The list is
+// Gap up to which grains that do not touch are watched, as a share of the mean radius. The list is
 // made anew when one has moved by half of it.
 constexpr double kSkinShare = 0.05;
 
@@ -27,7 +27,7 @@ struct Image {
   std::array<int, 3> image{0, 0, 0};
 };
 
-/// Images of the spheres that may touch another across a face that repeats.
+/// Images of the grains that may touch another across a face that repeats.
 std::vector<Image> images_near_faces(const Cell<3>& cell, const std::vector<Reach<3>>& spheres) {
   std::vector<Image> out;
   if (!cell.is_periodic()) return out;
@@ -377,7 +377,7 @@ void SpaceNetwork<Contacts>::ensure_candidates(const Vector& z) {
   }
 }
 
-/// Pairs within reach of where z puts the spheres, sorted.
+/// Pairs within reach of where z puts the grains, sorted.
 template <SpaceContacts Contacts>
 auto SpaceNetwork<Contacts>::near(const Vector& z) const -> std::vector<Pair> {
   const int n = static_cast<int>(bodies_.size());
@@ -401,7 +401,7 @@ auto SpaceNetwork<Contacts>::near(const Vector& z) const -> std::vector<Pair> {
       if (height < bodies_[i].radius + skin_) add(i, -1 - static_cast<int>(w), {0, 0, 0});
     }
   }
-  // Images of the spheres near a face that repeats, behind the real ones.
+  // Images of the grains near a face that repeats, behind the real ones.
   const std::vector<Image> images = images_near_faces(cell_, reaches);
   for (const Image& m : images) {
     reaches.push_back({reaches[m.grain].centre + Vec3(cell_.edges * whole(m.image)),

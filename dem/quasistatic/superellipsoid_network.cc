@@ -19,9 +19,10 @@ constexpr double kLightDepth = 1e-5;
 constexpr double kStepShare = 1e-3, kLeastStep = 1e-9, kMostStep = 1e-6;
 // The search for the common normal ends when the depth is known (common_normal.h), where the
 // normal may be off by 1e-6. Searched again it is known to the last digits, and so are the
-// curvatures, of which derivatives are taken: until it turns by less, at most so many times.
+// curvatures, of which derivatives are taken: until it turns by less, or rests after so many
+// searches. Far from its start it takes more, each of which turns it by kMostTurn at most.
 constexpr double kLeastTurn = 1e-10;
-constexpr int kMostSearches = 4;
+constexpr int kSearches = 4, kMostSearches = 40;
 // What the search leaves of a contact's size, over it, and more.
 constexpr double kRounded = 1e-9;
 
@@ -99,6 +100,7 @@ bool SuperellipsoidContacts::overlap(const PlacedPair& pair, const PairMotion& m
     const Vec3 before = known.normal;
     if (!common_normal(first, second, across, known, found, law_.curvatures())) return false;
     if ((found.normal - before).squaredNorm() < kLeastTurn * kLeastTurn) break;
+    if (k + 1 >= kSearches && found.settled) break;
   }
   o.normal = found.normal;
   o.depth = found.depth;

@@ -41,7 +41,7 @@ AT = 0.25  # of the depth: where the axis is looked at
 RIGHT = (2, 5, 10, 20)  # %
 SPACE = ("superellipsoids", "spheres")  # shapes of the grains that variants are named by
 COLOURS = {HOMOGENEOUS: "#1a5fa8", BY_DEPTH: "#c5502f"}
-SHAPES = {"disk": "disks", "regular": "regular polygons", "irregular": "pentagons"}  # by packing.shape
+SHAPES = {"disk": "disks", "superellipsoid": "superellipsoids", "regular": "regular polygons", "irregular": "pentagons"}  # by packing.shape
 POINTS = {0.0: 6, 0.2: 4, 0.5: 7, 1.0: 9}  # gnuplot's, by friction
 
 

@@ -109,20 +109,20 @@ for slip in 0.5 5 50; do
 done
 
 # Dropped piles of runs/liffman.txt and liffman-grains.txt, of those that are there.
-dropped() { # NAME MEMBER: piles by implicit motion, judged as the explicit ones
-  local file name names=()
-  for file in "$here/states/liffman/$1"-?.h5.xz; do
-    [ -e "$file" ] || return 0
+dropped() { # NAME MEMBER: thirty piles by implicit motion, judged as the explicit ones
+  local files=("$here/states/liffman/$1"-?.h5.xz) file name names=()
+  [ ${#files[@]} -eq 5 ] || return 0
+  for file in "${files[@]}"; do
     name=$(basename "$file" .xz)
     xz -dkc "$file" > "$name"
     names+=("\"$name\"")
   done
-  run "dropped-$2" liffman-dropped --set ensemble.realizations=$((6 * ${#names[@]})) --set "grains.files=[$(IFS=,; echo "${names[*]}")]" "${@:3}"
+  run "dropped-$2" liffman-dropped --set "grains.files=[$(IFS=,; echo "${names[*]}")]" "${@:3}"
   measure summary liffman-dropped "dropped-$2/summary.json" --member "$2" --keys dip. dem.repose_angle
 }
 dropped implicit implicit
 dropped coulomb implicit_coulomb --set material.friction=0.5
-for name in unlike coulomb coulomb_unlike pentagons; do
+for name in equal unlike coulomb coulomb_unlike pentagons; do
   record=$here/states/liffman-grains/${name}_968.json
   [ ! -e "$record" ] || measure summary liffman-dropped-grains "$record" --member ${name}_968 --keys dip. dem.repose_angle
 done

@@ -62,8 +62,8 @@ void Layer<3>::check(const Setup& s) {
                                                 : nullptr;
     if (found != nullptr) {
       throw std::invalid_argument(fmt::format(
-          "load.probe_strain: found {:g} with {}, allowed: 0 (the quasi-static solver strains "
-          "spheres in cells that repeat)",
+          "load.probe_strain: found {:g} with {}, allowed: 0 (layers of spheres between periodic "
+          "sides are strained)",
           s.load.probe_strain, found));
     }
     check_method("load.probe_strain", "newton", s.material, s.motion, 3);

@@ -26,7 +26,7 @@ std::vector<std::size_t> all_of(std::size_t tasks) {
 
 TEST(TimeLeft, LaterTasksTakeWhatTheFirstTook) {
   const auto mine = all_of(8);
-  TimeLeft left(8);
+  TimeLeft left(std::vector<std::size_t>(8, 0));
   EXPECT_LT(left.left(mine, 1), 0);
   double before = 8 * kWhole;
   for (int second = 0; second < 8 * 130; ++second) {
@@ -44,7 +44,7 @@ TEST(TimeLeft, LaterTasksTakeWhatTheFirstTook) {
 // While the first one carries its load, the load is all that is known of the time to come.
 TEST(TimeLeft, FallsWhileTheFirstTaskIsSlow) {
   const auto mine = all_of(8);
-  TimeLeft left(8);
+  TimeLeft left(std::vector<std::size_t>(8, 0));
   double before = 0;
   for (int second = 0; second < 110; ++second) {
     left.tell(0, second, fraction_at(second));
@@ -59,14 +59,14 @@ TEST(TimeLeft, FallsWhileTheFirstTaskIsSlow) {
 
 TEST(TimeLeft, TasksAtOnceAndResumedOnes) {
   // Two at a time; the last one alone.
-  TimeLeft left(3);
+  TimeLeft left(std::vector<std::size_t>(3, 0));
   left.tell(0, 0, 0);
   left.tell(1, 0, 0);
   left.tell(0, 10, 1);
   left.tell(1, 10, 1);
   EXPECT_NEAR(left.left(all_of(3), 2), 10, 1e-9);
   // What a checkpoint had done took no time of this start.
-  TimeLeft resumed(1);
+  TimeLeft resumed(std::vector<std::size_t>(1, 0));
   resumed.tell(0, 0, 0.8);
   resumed.tell(0, 10, 0.9);
   EXPECT_NEAR(resumed.left({0}, 1), 10, 1e-9);
@@ -75,6 +75,17 @@ TEST(TimeLeft, TasksAtOnceAndResumedOnes) {
   EXPECT_NEAR(resumed.left({0}, 1), 10, 1e-9);
   resumed.tell(0, 30, 0.90001);
   EXPECT_LT(resumed.left({0}, 1), 1000);
+}
+
+// Members of a sweep may be a small layer and a large one.
+TEST(TimeLeft, KindsHavePacesOfTheirOwn) {
+  TimeLeft left({0, 0, 1, 1});
+  left.tell(0, 0, 0);
+  left.tell(0, 10, 1);
+  EXPECT_NEAR(left.left(all_of(4), 1), 30, 1e-9);
+  left.tell(2, 10, 0);
+  left.tell(2, 110, 1);
+  EXPECT_NEAR(left.left(all_of(4), 1), 10 + 100, 1e-9);
 }
 
 }  // namespace

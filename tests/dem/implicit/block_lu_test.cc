@@ -89,6 +89,7 @@ TEST(BlockLu, HasTheSameBitsAtAnyWidth) {
     matrix.solve(Eigen::VectorXd::LinSpaced(3 * n, -1, 1), found.emplace_back());
   }
   use_lane_width(before);
+  if (found.size() < 2) GTEST_SKIP() << "this processor has one width";
   for (const Eigen::VectorXd& x : found) EXPECT_EQ(x, found[0]);
 }
 
