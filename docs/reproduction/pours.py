@@ -51,7 +51,7 @@ POURS = (
     ("shifted layers, 6,500 grains", ("pile-asymmetric-line",)),
 )
 #: Studies and members of which results/ has the difference alone: states are lost or not kept. Other sleep: older rules.
-RECORDED = (("equal disks from a point, 968, other sleep", "liffman-dropped", ""),
+RECORDED = (("equal disks from a point, 968", "liffman-dropped-grains", "equal_968"),
             ("equal disks with friction, 968", "liffman-dropped-grains", "coulomb_968"),
             ("disks of unlike radii, 968", "liffman-dropped-grains", "unlike_968"),
             ("disks of unlike radii with friction, 968", "liffman-dropped-grains", "coulomb_unlike_968"),
