@@ -43,7 +43,7 @@ std::string with_point(std::string text) {
       text.find_first_of(digits, comma) != comma + 1) {
     return "";
   }
-  const bool thousands = text.size() == comma + 4;
+  const bool thousands = text.size() == comma + 4 && text.find_first_not_of("+-0") < comma;
   const std::string whole = text.substr(0, comma) + text.substr(comma + 1);
   text[comma] = '.';
   if (parse_number(text)) return thousands ? text + " or " + whole : text;

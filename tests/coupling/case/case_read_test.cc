@@ -550,6 +550,11 @@ TEST(CaseErrors, DecimalCommas) {
             "\"3.6 mm\"");
   EXPECT_EQ(complaint(head, {"material.friction=0,5"}),
             "--set: material.friction: found \"0,5\", allowed: a decimal point; write 0.5");
+  EXPECT_EQ(complaint(head + "density = 5,000\n"),
+            "x.toml:3: density: found 5,000, allowed: a decimal point; write density = 5.000 or "
+            "5000");
+  EXPECT_EQ(complaint(head + "friction = 0,125\n"),
+            "x.toml:3: friction: found 0,125, allowed: a decimal point; write friction = 0.125");
   for (const char* other : {"1,", ",5,", "1,2,3", "0,5 0,6", "a,5"}) {
     EXPECT_THAT(complaint(head + "friction = " + other + "\n"),
                 HasSubstr("x.toml:3: not valid TOML: "))
