@@ -9,8 +9,9 @@ namespace {
 
 // No estimate before this share of a task is done.
 constexpr double kLeast = 0.01;
-// Share of the time so far that tells of what comes next.
-constexpr double kRecent = 1.0 / 3;
+// Share of the time so far that tells of what comes next, and the least number of parts: fewer may
+// hold a standstill.
+constexpr double kRecent = 1.0 / 3, kFewest = 5;
 // A part that is done, but for rounding.
 constexpr double kWhole = 1 - 1e-9;
 
@@ -70,7 +71,7 @@ TimeLeft::Passed TimeLeft::all_kinds() const {
 TimeLeft::Parts TimeLeft::paces(const Passed& passed) {
   const double all = total_of(passed.took);
   double took = 0, done = 0;
-  for (std::size_t k = kParts; k-- > 0 && took < kRecent * all;) {
+  for (std::size_t k = kParts; k-- > 0 && (took < kRecent * all || done < kFewest);) {
     took += passed.took[k];
     done += passed.done[k];
   }

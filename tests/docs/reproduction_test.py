@@ -19,6 +19,7 @@ import measure  # noqa: E402
 import rve_scatter as scatter  # noqa: E402
 import tables  # noqa: E402
 import page as maker  # noqa: E402
+import verdicts  # noqa: E402
 from rows import (FILES, NOT_RUN, RULES, agreement, all_rows, band, judged, members_of, of_test,  # noqa: E402
                   off_band, piles_to_inform, places, read_toml, unanswered)
 from summaries import Measured, Results, holm  # noqa: E402
@@ -991,6 +992,12 @@ def test_the_tables_of_wellmanns_page_are_what_the_script_makes():
     text = (ROOT / "docs/cases/wellmann-box.md").read_text()
     assert tables.put(text, causes.tables(), "") == text, "docs/reproduction/causes.py --write makes them again"
     assert tables.put(text.replace("| 3 |", "| 4 |"), causes.tables(), "") == text
+
+
+def test_the_table_of_verdicts_is_what_the_script_makes():
+    text, made = verdicts.PAGE.read_text(), verdicts.made(verdicts.records())
+    assert tables.put(text, made, "") == text, "docs/reproduction/verdicts.py --write makes it again"
+    assert tables.put(text.replace(" n, s |", " s |"), made, "") == text
 
 
 def test_a_table_without_a_place_on_its_page_is_told(capsys):
