@@ -97,7 +97,8 @@ std::string trimmed(std::string_view s) {
   return first == std::string_view::npos ? "" : std::string(s.substr(first, last - first + 1));
 }
 
-// What is wrong with "friction = 0,5" in this line, from 1; empty where that is not the mistake.
+// The mistake of "friction = 0,5" in words, for line number `line` from 1; empty for any other
+// line.
 std::string decimal_comma(std::string_view text, unsigned line) {
   for (; line > 1; --line) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
   text = text.substr(0, text.find('\n'));

@@ -20,8 +20,8 @@ using soft_contact::Derived3;
 constexpr double kPatience = 12, kProgress = 0.7;
 // An iteration that lowers the largest residual to this share of it keeps its factors for the next.
 constexpr double kKeep = 0.01;
-// Of the way that a disk's velocity would take it, a disk that touches another goes about so much:
-// in the trapezoidal rule the velocities of stiff contacts swing from step to step.
+// First guess for a disk that touches another: so much of the way that its velocity would take it.
+// In the trapezoidal rule the velocities of stiff contacts swing from step to step.
 constexpr double kSwing = 0.25;
 // Round-off of a force K s, in units of K times the widest diameter times epsilon.
 constexpr double kRoundOff = 16;

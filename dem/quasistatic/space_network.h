@@ -25,7 +25,7 @@ struct PlacedPair {
   bool is_plane() const { return j < 0; }
 };
 
-/// What they have moved since then.
+/// Motion of the pair since then.
 struct PairMotion {
   Vec3 shift{0, 0, 0};                    ///< u_i - u_j, m
   Vec3 turn_i{0, 0, 0}, turn_j{0, 0, 0};  ///< rotation vectors, rad

@@ -1,4 +1,4 @@
-// What equilibrium needs of a contact law of superellipsoids: forces at rest by the overlap.
+// Contact laws of superellipsoids as equilibrium needs them: forces at rest by the overlap.
 #pragma once
 #include "dem/laws/registry.h"
 
@@ -6,7 +6,7 @@ namespace grainfield::dem {
 
 class SuperellipsoidLaw {
  public:
-  /// Of friction: stiffnesses along the overlap's major and across it, N/m. A spring goes by `size`
+  /// Friction: stiffnesses along the overlap's major and across it, N/m. A spring goes by `size`
   /// (m) where that shrinks, or always; size 0: by nothing.
   struct Spring {
     double major = 0, minor = 0;

@@ -1,4 +1,4 @@
-// What the load does to the grains of layers, and whether models of small changes apply.
+// The effect of a load on the grains of layers, and whether models of small changes apply.
 #pragma once
 #include <string>
 #include <vector>
