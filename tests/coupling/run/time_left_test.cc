@@ -79,13 +79,13 @@ TEST(TimeLeft, TasksAtOnceAndResumedOnes) {
 
 // Members of a sweep may be a small layer and a large one.
 TEST(TimeLeft, KindsHavePacesOfTheirOwn) {
-  TimeLeft left({0, 0, 1, 1});
+  TimeLeft left({0, 0, 0, 1, 1});
   left.tell(0, 0, 0);
   left.tell(0, 10, 1);
-  EXPECT_NEAR(left.left(all_of(4), 1), 30, 1e-9);
-  left.tell(2, 10, 0);
-  left.tell(2, 110, 1);
-  EXPECT_NEAR(left.left(all_of(4), 1), 10 + 100, 1e-9);
+  EXPECT_NEAR(left.left(all_of(5), 1), 40, 1e-9);
+  left.tell(3, 10, 0);
+  left.tell(3, 110, 1);
+  EXPECT_NEAR(left.left(all_of(5), 1), 2 * 10 + 100, 1e-9);
 }
 
 }  // namespace
