@@ -13,8 +13,8 @@ void watch_progress(ProgressFunction watcher) { watching = watcher; }
 
 ProgressFunction progress_watcher() { return watching; }
 
-void tell_progress(const std::string& solver, double share) {
-  if (const ProgressFunction watcher = watching) watcher(solver, share);
+void tell_progress(const std::string& task, double share) {
+  if (const ProgressFunction watcher = watching) watcher(task, share);
 }
 
 }  // namespace grainfield::continuum

@@ -207,7 +207,7 @@ void add_compare(CLI::App& app, Action& action) {
         request->folder = "results/compare-" + std::filesystem::path(request->file).stem().string();
       }
       const CompareOutcome outcome = [&] {
-        const SolverProgress progress;
+        const TaskProgress progress;
         return run_compare(*request);
       }();
       if (!outcome.gone.empty()) note("{}", outcome.gone);

@@ -65,7 +65,7 @@ void add_fit(CLI::App& app, Action& action) {
             "results/fit-" + std::filesystem::path(wanted.inputs.front()).stem().string();
       }
       const FitOutcome outcome = [&] {
-        const SolverProgress progress;
+        const TaskProgress progress;
         return run_fit(wanted);
       }();
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);

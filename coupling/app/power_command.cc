@@ -81,7 +81,7 @@ void add_power(CLI::App& app, Action& action) {
             "results/power-" + std::filesystem::path(wanted.inputs.front()).stem().string();
       }
       const Judgement judgement = [&] {
-        const SolverProgress progress;
+        const TaskProgress progress;
         return judgement_of(wanted);
       }();
       const JudgementTable table = power_table(judgement);

@@ -14,8 +14,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kEvery = std::chrono::seconds(5);           // elsewhere than on a terminal
-constexpr auto kSolverPatience = std::chrono::seconds(3);  // before a solver is spoken of
+constexpr auto kEvery = std::chrono::seconds(5);         // elsewhere than on a terminal
+constexpr auto kTaskPatience = std::chrono::seconds(3);  // before a task is spoken of
 
 struct Watched {
   std::mutex mutex;
@@ -28,11 +28,11 @@ Watched& watched() {
   return one;
 }
 
-void show_solver(const std::string& solver, double share) {
+void show_task(const std::string& task, double share) {
   Watched& w = watched();
   const std::lock_guard lock(w.mutex);
-  if (!w.line || Clock::now() - w.begin < kSolverPatience) return;
-  w.line->show([&] { return fmt::format("{}  {:.0f} % of the load", solver, 100 * share); });
+  if (!w.line || Clock::now() - w.begin < kTaskPatience) return;
+  w.line->show([&] { return fmt::format("{}  {:.0f} %", task, 100 * share); });
 }
 
 }  // namespace
@@ -67,15 +67,15 @@ void ProgressLine::end() {
   open_ = false;
 }
 
-SolverProgress::SolverProgress() {
+TaskProgress::TaskProgress(bool quiet) {
   Watched& w = watched();
   const std::lock_guard lock(w.mutex);
-  w.line = std::make_unique<ProgressLine>(false);
+  w.line = std::make_unique<ProgressLine>(quiet);
   w.begin = Clock::now();
-  continuum::watch_progress(show_solver);
+  continuum::watch_progress(show_task);
 }
 
-SolverProgress::~SolverProgress() {
+TaskProgress::~TaskProgress() {
   continuum::watch_progress(nullptr);
   Watched& w = watched();
   const std::lock_guard lock(w.mutex);

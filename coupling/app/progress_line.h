@@ -27,14 +27,14 @@ class ProgressLine {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// While it lives, finite elements that solve for more than a few seconds say how far they are:
-/// "fe_cone  40 % of the load". One at a time.
-class SolverProgress {
+/// While it lives, computations of more than a few seconds (continuum/progress.h) say how far they
+/// are: "fe_cone  40 %". One at a time.
+class TaskProgress {
  public:
-  SolverProgress();
-  ~SolverProgress();
-  SolverProgress(const SolverProgress&) = delete;
-  SolverProgress& operator=(const SolverProgress&) = delete;
+  explicit TaskProgress(bool quiet = false);
+  ~TaskProgress();
+  TaskProgress(const TaskProgress&) = delete;
+  TaskProgress& operator=(const TaskProgress&) = delete;
 };
 
 /// "1:02:03", "4:05"; "?" below 0.
