@@ -127,10 +127,11 @@ double round_down(double value) {
 }
 
 void check_method(const char* key, const std::string& method, const MaterialSetup& material,
-                  const MotionSetup& motion, int dim) {
+                  const MotionSetup& motion, ShapeKind shape) {
   if (method != "newton") return;
-  if (dim == 3) SphereLaw{law_of(material)};  // refuses the laws that it does not know
-  if (dim == 2 && RollingLaw::of(material).on()) {
+  if (shape == ShapeKind::sphere) SphereLaw{law_of(material)};  // refuses some laws
+  const bool plane = shape.visit([](auto kind) { return decltype(kind)::dim == 2; });
+  if (plane && RollingLaw::of(material).on()) {
     throw std::invalid_argument(fmt::format(
         "{}: found \"newton\" with material.rolling_friction = {:g}, allowed: \"damped\" "
         "(in the plane the quasi-static solver knows no resistance against rolling)",

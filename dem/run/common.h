@@ -40,10 +40,10 @@ void check_superellipsoid_material(const MaterialSetup& material);
 /// A positive number to three digits, never up: the limit that a message names must be accepted.
 double round_down(double value);
 /// Throws std::invalid_argument naming `key` where the method is "newton" and the grains have what
-/// the quasi-static solver does not know: in the plane resistance against rolling, in space some of
-/// the laws.
+/// the quasi-static solver does not know: in the plane resistance against rolling, of spheres some
+/// of the laws.
 void check_method(const char* key, const std::string& method, const MaterialSetup& material,
-                  const MotionSetup& motion, int dim = 2);
+                  const MotionSetup& motion, ShapeKind shape = {});
 
 /// Throws std::invalid_argument naming rest.background_damping when it would take more than its
 /// velocity from a grain within a time step.

@@ -48,29 +48,18 @@ void Layer<3>::check(const Setup& s) {
         "presses grains in the plane)");
   }
   const bool angular = is_angular(p);
-  for (const auto& [key, method] :
-       {std::pair{"load.rest", s.load.rest}, {"load.method", s.load.method}}) {
-    if (!angular || method != "newton") continue;
+  if (s.load.probe_strain > 0 && p.sides != "periodic") {
     throw std::invalid_argument(
-        fmt::format("{}: found \"newton\" with packing.shape = \"superellipsoid\", allowed: "
-                    "\"damped\" (newton ends rests and loads of spheres)",
-                    key));
-  }
-  if (s.load.probe_strain > 0) {
-    const char* found = angular                 ? "packing.shape = \"superellipsoid\""
-                        : p.sides != "periodic" ? "packing.sides = \"walls\""
-                                                : nullptr;
-    if (found != nullptr) {
-      throw std::invalid_argument(fmt::format(
-          "load.probe_strain: found {:g} with {}, allowed: 0 (layers of spheres between periodic "
-          "sides are strained)",
-          s.load.probe_strain, found));
-    }
-    check_method("load.probe_strain", "newton", s.material, s.motion, 3);
+        fmt::format("load.probe_strain: found {:g} with packing.sides = \"{}\", allowed: 0 (layers "
+                    "between periodic sides are strained)",
+                    s.load.probe_strain, p.sides));
   }
   if (angular) check_superellipsoid_material(s.material);
-  check_method("load.rest", s.load.rest, s.material, s.motion, 3);
-  check_method("load.method", s.load.method, s.material, s.motion, 3);
+  const ShapeKind shape = angular ? ShapeKind::superellipsoid : ShapeKind::sphere;
+  check_method("load.rest", s.load.rest, s.material, s.motion, shape);
+  check_method("load.method", s.load.method, s.material, s.motion, shape);
+  if (s.load.probe_strain > 0)
+    check_method("load.probe_strain", "newton", s.material, s.motion, shape);
   const double depth = falls(s) ? p.depth : 2 * p.rows * p.radius;
   const double fall = falls(s) ? std::max(0.0, loose_height(p) - depth) : 0;
   check_stiff_enough(s.material,
