@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "coupling/studies/point_load/layer.h"
+#include "coupling/studies/point_load/layer_probe.h"
 #include "coupling/studies/point_load/simulation.h"
 #include "dem/grains/layer_3d.h"
 #include "dem/run/outlook.h"
@@ -163,6 +164,7 @@ TEST(SpaceLoad, SuperellipsoidsByNewtonsMethod) {
   ASSERT_EQ(newton.figures.at("rest.by_newton"), 1);
   EXPECT_NEAR(newton.figures.at("base.weight_ratio"), 1, 1e-6);
   EXPECT_NEAR(newton.figures.at("base.response_over_load"), 1, 1e-3);
+  EXPECT_EQ(probes_of(newton.snapshots[0].second, kProbedLayer).probes.size(), 6U);
   for (const auto& [name, state] : newton.snapshots) expect_balanced(state, 1e-7, name);
   const auto sunk = [](const RunResult& r) {
     const Snapshot &from = r.snapshots[0].second, &to = r.snapshots[1].second;
