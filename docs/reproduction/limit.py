@@ -237,7 +237,7 @@ def causes(runs):
 
 
 def linearity(runs):
-    head = ["depth / d", "μ", "load in weights of a disk", "contacts that close", "open", "begin to slide",
+    head = ["depth / d", "μ", "load in weights of a grain", "contacts that close", "open", "begin to slide",
             "peaks at 0.25, 0.5, 0.75 h and on the base", "E at the base over that at the surface"]
     rows = []
     for run in usual(runs):
@@ -260,7 +260,7 @@ def with_error(run, key, digits):
 
 def ends(runs):
     """Where linear response ends, of the runs that tell."""
-    head = ["depth / d", "μ", "first contact slides or opens at (weights of a disk)", "first opens at",
+    head = ["depth / d", "μ", "first contact slides or opens at (weights of a grain)", "first opens at",
             "a hundredth have at", "the same over depth / d"]
     rows = []
     for run in usual(runs):
@@ -275,7 +275,7 @@ def ends(runs):
 def settlements(runs):
     """Settlements over the predicted ones, of the runs that tell."""
     head = ["depth / d", "μ", "surface, h/4 to h from the load: over one stiffness", "over stiffness by depth",
-            "below the load, h/4 to 3h/4: over one stiffness", "over stiffness by depth", "loaded disk: E_v u / F"]
+            "below the load, h/4 to 3h/4: over one stiffness", "over stiffness by depth", "loaded grain: E_v u / F (spheres: E_v u h / F)"]
     rows = []
     for run in usual(runs):
         keys = [f"settlement.{model}.{place}" for place in ("surface", "axis") for model in (HOMOGENEOUS, BY_DEPTH)]
@@ -285,7 +285,7 @@ def settlements(runs):
 
 
 def costs(runs):
-    head = ["depth / d", "μ", "disks in a layer", "layers", "CPU min", "deposit and load",
+    head = ["depth / d", "μ", "grains in a layer", "layers", "CPU min", "deposit and load",
             "rest, moduli, response (clock)", "finite elements (clock)", "memory (MB)"]
     rows = []
     for run in usual(runs):
