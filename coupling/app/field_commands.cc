@@ -207,7 +207,8 @@ void add_compare(CLI::App& app, Action& action) {
         request->folder = "results/compare-" + std::filesystem::path(request->file).stem().string();
       }
       const CompareOutcome outcome = [&] {
-        const TaskProgress progress;
+        ProgressLine line(false);
+        const TaskProgress tasks(line);
         return run_compare(*request);
       }();
       if (!outcome.gone.empty()) note("{}", outcome.gone);

@@ -65,7 +65,8 @@ void add_fit(CLI::App& app, Action& action) {
             "results/fit-" + std::filesystem::path(wanted.inputs.front()).stem().string();
       }
       const FitOutcome outcome = [&] {
-        const TaskProgress progress;
+        ProgressLine line(false);
+        const TaskProgress tasks(line);
         return run_fit(wanted);
       }();
       if (!outcome.lacks.empty()) note("warning: {}", outcome.lacks);

@@ -117,7 +117,8 @@ void add_model(CLI::App& app, Action& action) {
           in_registry({given->name, given->name, parse_settings(given->sets, "--set")});
       const auto& info = continuum::find_model(choice.name);
       const auto& settings = choice.settings;
-      auto progress = std::make_unique<TaskProgress>();
+      ProgressLine line(false);
+      auto progress = std::make_unique<TaskProgress>(line);
       const auto model = continuum::make_model(choice.name, settings);
       const int dim = continuum::dimension(info, settings);
       if (given->cylindrical && dim != 3) {

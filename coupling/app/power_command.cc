@@ -81,7 +81,8 @@ void add_power(CLI::App& app, Action& action) {
             "results/power-" + std::filesystem::path(wanted.inputs.front()).stem().string();
       }
       const Judgement judgement = [&] {
-        const TaskProgress progress;
+        ProgressLine line(false);
+        const TaskProgress tasks(line);
         return judgement_of(wanted);
       }();
       const JudgementTable table = power_table(judgement);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <memory>
 #include <mutex>
 
 #include "continuum/progress.h"
@@ -15,11 +14,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kEvery = std::chrono::seconds(5);         // elsewhere than on a terminal
-constexpr auto kTaskPatience = std::chrono::seconds(3);  // before a task is spoken of
+constexpr auto kTaskPatience = std::chrono::seconds(3);  // from when a task first tells
 
 struct Watched {
   std::mutex mutex;
-  std::unique_ptr<ProgressLine> line;
+  ProgressLine* line = nullptr;
+  std::string task;
   Clock::time_point begin;
 };
 
@@ -31,7 +31,11 @@ Watched& watched() {
 void show_task(const std::string& task, double share) {
   Watched& w = watched();
   const std::lock_guard lock(w.mutex);
-  if (!w.line || Clock::now() - w.begin < kTaskPatience) return;
+  if (task != w.task) {
+    w.task = task;
+    w.begin = Clock::now();
+  }
+  if (w.line == nullptr || Clock::now() - w.begin < kTaskPatience) return;
   w.line->show([&] { return fmt::format("{}  {:.0f} %", task, 100 * share); });
 }
 
@@ -67,11 +71,11 @@ void ProgressLine::end() {
   open_ = false;
 }
 
-TaskProgress::TaskProgress(bool quiet) {
+TaskProgress::TaskProgress(ProgressLine& line) {
   Watched& w = watched();
   const std::lock_guard lock(w.mutex);
-  w.line = std::make_unique<ProgressLine>(quiet);
-  w.begin = Clock::now();
+  w.line = &line;
+  w.task.clear();
   continuum::watch_progress(show_task);
 }
 
@@ -79,8 +83,8 @@ TaskProgress::~TaskProgress() {
   continuum::watch_progress(nullptr);
   Watched& w = watched();
   const std::lock_guard lock(w.mutex);
-  if (w.line) w.line->end();
-  w.line.reset();
+  w.line->end();
+  w.line = nullptr;
 }
 
 std::string duration_text(double seconds) {

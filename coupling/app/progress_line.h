@@ -27,11 +27,11 @@ class ProgressLine {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// While it lives, computations of more than a few seconds (continuum/progress.h) say how far they
-/// are: "fe_cone  40 %". One at a time.
+/// While it lives, computations (continuum/progress.h) say on the line how far they are, some
+/// seconds after each has told for the first time: "fe_cone  40 %". One at a time.
 class TaskProgress {
  public:
-  explicit TaskProgress(bool quiet = false);
+  explicit TaskProgress(ProgressLine& line);
   ~TaskProgress();
   TaskProgress(const TaskProgress&) = delete;
   TaskProgress& operator=(const TaskProgress&) = delete;

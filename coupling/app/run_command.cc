@@ -60,7 +60,7 @@ int run(const RunRequest& given) {
   options.note = [&](const std::string& text) { line.note(text); };
   options.warn = [&](const std::string& text) { line.note("grainfield: warning: " + text); };
   try {
-    const TaskProgress analysis(!ranks.first());
+    const TaskProgress tasks(line);
     run_case(value, ranks, options);
   } catch (...) {
     line.end();

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "continuum/progress.h"
 #include "coupling/models/model_record.h"
 #include "coupling/run/comparison_page.h"
 
@@ -117,7 +118,12 @@ std::vector<SeenModel> see_models(const Observations& observed,
   const Sets sets = sets_of(observed);
   const std::size_t lines = observed.lines.size();
   std::vector<SeenModel> out;
+  const auto tell = [&] {
+    const auto count = static_cast<double>(choices.size());
+    continuum::tell_progress("models", static_cast<double>(out.size()) / count);
+  };
   for (const ModelChoice& choice : choices) {
+    tell();
     SeenModel seen;
     seen.choice = choice;
     seen.told = told ? told(choice) : observed.told;
@@ -142,6 +148,7 @@ std::vector<SeenModel> see_models(const Observations& observed,
     seen.seconds = e.seconds;
     out.push_back(std::move(seen));
   }
+  tell();
   return out;
 }
 

@@ -13,6 +13,7 @@
 #include "dem/motion/leaping.h"
 #include "dem/motion/motion_setup.h"
 #include "dem/quasistatic/sphere_law.h"
+#include "dem/quasistatic/superellipsoid_law.h"
 #include "dem/run/outlook.h"
 #include "dem/run/run.h"
 #include "dem/run/setup.h"
@@ -126,23 +127,31 @@ double round_down(double value) {
   return std::floor(value / unit * (1 + 1e-12)) * unit;
 }
 
-void check_method(const char* key, const std::string& method, const MaterialSetup& material,
-                  const MotionSetup& motion, ShapeKind shape) {
-  if (method != "newton") return;
-  if (shape == ShapeKind::sphere) SphereLaw{law_of(material)};  // refuses some laws
+void check_quasistatic(const std::string& asked, const char* allowed, const MaterialSetup& material,
+                       const MotionSetup& motion, ShapeKind shape) {
+  // These refuse the laws that they do not know.
+  if (shape == ShapeKind::sphere) SphereLaw{law_of(material)};
+  if (shape == ShapeKind::superellipsoid) SuperellipsoidLaw{law_of(material)};
   const bool plane = shape.visit([](auto kind) { return decltype(kind)::dim == 2; });
   if (plane && RollingLaw::of(material).on()) {
     throw std::invalid_argument(fmt::format(
-        "{}: found \"newton\" with material.rolling_friction = {:g}, allowed: \"damped\" "
-        "(in the plane the quasi-static solver knows no resistance against rolling)",
-        key, material.rolling_friction));
+        "{} with material.rolling_friction = {:g}, allowed: {} (in the plane the quasi-static "
+        "solver knows no resistance against rolling)",
+        asked, material.rolling_friction, allowed));
   }
   if (motion.energy_balance) {
     throw std::invalid_argument(
-        fmt::format("{}: found \"newton\" with motion.energy_balance = true, allowed: \"damped\" "
-                    "(the quasi-static solver follows no energy)",
-                    key));
+        fmt::format("{} with motion.energy_balance = true, allowed: {} (the quasi-static solver "
+                    "follows no energy)",
+                    asked, allowed));
   }
+}
+
+void check_method(const char* key, const std::string& method, const MaterialSetup& material,
+                  const MotionSetup& motion, ShapeKind shape) {
+  if (method != "newton") return;
+  check_quasistatic(fmt::format("{}: found \"newton\"", key), "\"damped\"", material, motion,
+                    shape);
 }
 
 void check_superellipsoid_material(const MaterialSetup& material) {

@@ -39,11 +39,14 @@ EngineSettings engine_settings(const MaterialSetup& material, const MotionSetup&
 void check_superellipsoid_material(const MaterialSetup& material);
 /// A positive number to three digits, never up: the limit that a message names must be accepted.
 double round_down(double value);
-/// Throws std::invalid_argument naming `key` where the method is "newton" and the grains have what
-/// the quasi-static solver does not know: in the plane resistance against rolling, of spheres some
-/// of the laws.
+/// Throws std::invalid_argument where the grains have what the quasi-static solver does not know:
+/// in the plane resistance against rolling, in space some of the laws. `asked`: "KEY: found VALUE",
+/// which asks for the solver; `allowed`: the value that does not.
+void check_quasistatic(const std::string& asked, const char* allowed, const MaterialSetup& material,
+                       const MotionSetup& motion, ShapeKind shape);
+/// The same of a key that says "newton" or "damped".
 void check_method(const char* key, const std::string& method, const MaterialSetup& material,
-                  const MotionSetup& motion, ShapeKind shape = {});
+                  const MotionSetup& motion, ShapeKind shape = ShapeKind::disk);
 
 /// Throws std::invalid_argument naming rest.background_damping when it would take more than its
 /// velocity from a grain within a time step.

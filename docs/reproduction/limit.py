@@ -42,7 +42,9 @@ RIGHT = (2, 5, 10, 20)  # %
 SPACE = ("superellipsoids", "spheres")  # shapes of the grains that variants are named by
 COLOURS = {HOMOGENEOUS: "#1a5fa8", BY_DEPTH: "#c5502f"}
 SHAPES = {"disk": "disks", "superellipsoid": "superellipsoids", "regular": "regular polygons", "irregular": "pentagons"}  # by packing.shape
-POINTS = {0.0: 6, 0.2: 4, 0.5: 7, 1.0: 9}  # gnuplot's, by friction
+#: Drawn layers: gnuplot's points by shape and friction.
+POINTS = {("disks", 0.0): 6, ("disks", 0.2): 4, ("disks", 0.5): 7, ("disks", 1.0): 9, ("spheres", 0.5): 5,
+          ("superellipsoids", 0.5): 13}
 
 
 class Run:
@@ -84,7 +86,7 @@ class Run:
         for row in csv.DictReader(line for line in self.profiles.splitlines() if not line.startswith("#")):
             width = float(re.search(r"w = (\S+) m", row["profile"])[1]) / self.number("layer.depth")
             if abs(float(row["x_m"])) < 1e-9 and (abs(width - 0.1) < 1e-3) == (kernel == "w_depths"):
-                values = [float(row[next(key for key in row if re.fullmatch(rf"{part}_N/m2?", key))] or "nan")
+                values = [float(row[next(key for key in row if re.fullmatch(rf"{part}_(N/m|Pa)", key))] or "nan")
                           for part in ("simulation", "standard_error", model)]
                 out[round(float(row["depth_m"]) / self.number("layer.depth"), 3)] = values
         first = f"compare.{model}.peak"  # of the first profile, which is at AT and at fixed width over d
@@ -219,16 +221,16 @@ def shifted(value):
 
 def causes(runs):
     head = ["depth / d", "excess over one stiffness, w = 0.1 h", "over stiffness by depth", "w = 1.5 d",
-            "load on 3 disks, w = 0.1 h", "on 10 disks", "shift / d at 0.25 h", "at 0.5 h", "at 0.75 h"]
+            "load on 3 grains, w = 0.1 h", "on 10 grains", "shift / d at 0.25 h", "at 0.5 h", "at 0.75 h"]
     rows = []
     for run in usual(runs):
-        if run.friction != 0.5 or run.shape != "disks":
+        if run.friction != 0.5 or run.shape not in ("disks", "spheres"):
             continue
         cells = [of(run)[0]]
         cells += [percent(*run.excess(model, kernel)) for model, kernel in (
             (HOMOGENEOUS, "w_depths"), (BY_DEPTH, "w_depths"), (HOMOGENEOUS, "w_diameters"))]
         for grains in (3, 10):
-            name = run.name.replace("-mu-0.5", f"-grains-{grains}")
+            name = f"{run.name.removesuffix('-mu-0.5')}-grains-{grains}"
             more = next((other for other in runs if other.name == name), None)
             cells.append(percent(*more.excess(HOMOGENEOUS, "w_depths")) if more else "–")
         cells += [shifted(run.shift(BY_DEPTH, "w_depths", at)) for at in (0.25, 0.5, 0.75)]
@@ -275,7 +277,7 @@ def ends(runs):
 def settlements(runs):
     """Settlements over the predicted ones, of the runs that tell."""
     head = ["depth / d", "μ", "surface, h/4 to h from the load: over one stiffness", "over stiffness by depth",
-            "below the load, h/4 to 3h/4: over one stiffness", "over stiffness by depth", "loaded grain: E_v u / F (spheres: E_v u h / F)"]
+            "below the load, h/4 to 3h/4: over one stiffness", "over stiffness by depth", "loaded grain: E_v u / F, in space E_v u h / F"]
     rows = []
     for run in usual(runs):
         keys = [f"settlement.{model}.{place}" for place in ("surface", "axis") for model in (HOMOGENEOUS, BY_DEPTH)]
@@ -290,6 +292,7 @@ def costs(runs):
     rows = []
     for run in usual(runs):
         dem, fe, all_analysis = (run.number(f"time.{name}") for name in ("dem_cpu_s", "continuum_s", "analysis_s"))
+        fe += run.summary.get("time.settlement_s", 0)
         rows.append(of(run) + [f"{run.number('dem.grains'):.0f}", f"{run.layers}", shown(run.cpu / 60), shown(dem / 60),
                                shown((all_analysis - fe) / 60), shown(fe / 60), f"{run.number('memory.peak_MB'):.0f}"])
     return table(line(head), rows)
@@ -334,20 +337,20 @@ def draw_misfits(runs, picture):
     for number, (region, kernel, title) in enumerate(panels):
         curves = []
         for side, model in ((-1, HOMOGENEOUS), (1, BY_DEPTH)):
-            for place, (friction, point) in enumerate(POINTS.items()):
+            for place, (kind, point) in enumerate(POINTS.items()):
                 shift = 1 + side * (0.01 + 0.015 * place)  # points of equal depth stand side by side
                 rows = []
                 for run in usual(runs):
-                    if run.friction == friction and run.shape == "disks":
+                    if (run.shape, run.friction) == kind:
                         m = run.misfit(model, region, kernel)
                         if m.known and m.bound < UNBOUNDED:
                             rows.append((run.depth * shift, m.value, m.low, max(m.high, m.value)))
                             most = max(most, m.high if m.resolved else 0)
                 if not rows:
                     continue
-                name = f"p{number}{model}{str(friction).replace('.', '')}".replace("_", "")
+                name = f"p{number}{model}{place}".replace("_", "")
                 data += block(name, rows)
-                told = f"title 'μ = {friction:g}'" if number == 0 and model == HOMOGENEOUS else "notitle"
+                told = f"title '{kind[0]}, μ = {kind[1]:g}'" if number == 0 and model == HOMOGENEOUS else "notitle"
                 colour = f"lc rgb '{COLOURS[model]}'"
                 curves.append(f"${name} using 1:2:3:4 with yerrorbars pt {point} ps 0.7 {colour} {told}")
                 curves.append(f"${name} using 1:2 with lines {colour} notitle")

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -33,8 +34,10 @@ namespace {
 constexpr std::array kRests{1e-9, 1e-8, 1e-7};
 // Finite elements of the plane are refined to this, far below the grains' noise: where shear is
 // soft they need many unknowns for more. In space theirs would pass most_unknowns, so they keep
-// their own tolerances, 0.5 % of F/h^2 for the layer and 1 % for the half space.
+// their own tolerances, 0.5 % of F/h^2 for the layer and 1 % of F/r^2 for the half space.
 constexpr const char* kFiniteElementTolerance = "1e-3";
+// What takes long, for whoever waits.
+constexpr const char *kModuli = "moduli of the layers", *kResponse = "response of the layers";
 // Models whose settlement is compared: those of a layer on which no contact of the base slides.
 const std::string kSettledByOne = "homogeneous_rough", kSettledByDepth = "by_depth_rough";
 
@@ -86,9 +89,10 @@ class Analysis {
         threads_(threads) {}
 
   Observations run(std::vector<ModelChoice>& models) {
+    tell(kModuli, 0);
     for (const std::string& file : out_.realizations) {
       prepare(read_realization(file));
-      tell("moduli of the layers", layers_.size());
+      tell(kModuli, layers_.size());
     }
     predict(models);  // before the response is known
     return observe();
@@ -227,6 +231,7 @@ class Analysis {
     const SettlementPlaces places{x, Eigen::VectorXd::LinSpaced(levels, first, depth_ - first),
                                   diameter_};
     std::vector<MeanResponse> responses;
+    tell(kResponse, 0);
     for (const RestingLayer& layer : layers_) {
       const MeanResponse& one = responses.emplace_back(mean_response(
           layer.rest, materials_, layer.frame, layer.places, force, depths, depth_, places, both));
@@ -237,7 +242,7 @@ class Analysis {
       figures_["response.out_of_balance"].push_back(one.out_of_balance);
       figures_["response.base_over_load"].push_back(one.base_share);
       add_end(one.end, mean_weight(layer.rest));
-      tell("response of the layers", responses.size());
+      tell(kResponse, responses.size());
     }
     compare_settlements(responses, places, seen.told);
     add_figures(out_.summary, figures_);
@@ -278,11 +283,14 @@ class Analysis {
     const double unit = whole_.mean[SlabConstants::e_v] / facts.force * (dim_ == 3 ? depth_ : 1);
     std::string head = "realization,place,at_over_h,displacement";
     std::vector<Settlements> models;
+    const auto begin = std::chrono::steady_clock::now();
     for (const auto& [model, table] : settling_) {
       head += "," + model.label;
       models.push_back(
           predicted_settlements(model, facts, continuum::read_moduli_by_depth(table), places));
     }
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    out_.summary["time.settlement_s"] = taken.count();
     std::string rows;
     for (std::size_t r = 0; r < layers.size(); ++r) {
       const Settlements& grains = layers[r].settled;

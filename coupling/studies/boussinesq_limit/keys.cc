@@ -21,8 +21,10 @@ void declare_response_keys(SectionKeys s) {
            "slabs of equal thickness that have moduli of their own");
   s.number("strips", "-", GRAINFIELD_MEMBER(ResponseSetup, strips), {1, 100},
            "parts of a slab whose scatter is its error in a single layer");
-  s.flag("finite_elements", GRAINFIELD_MEMBER(ResponseSetup, finite_elements),
-         "predict with the moduli by depth, too, by finite elements (minutes in space)");
+  s.flag(
+      "finite_elements", GRAINFIELD_MEMBER(ResponseSetup, finite_elements),
+      "predict with the moduli by depth, too, stress and settlement, by finite elements (minutes "
+      "in space)");
 }
 
 }  // namespace grainfield::coupling

@@ -90,6 +90,7 @@ std::vector<SummaryKey> limit_figures() {
       {"settlement.*.surface", "-",
        "mean settlement of the grains' surface, h/4 to h from the load, over that of MODEL"},
       {"settlement.*.axis", "-", "the same below the load, h/4 to 3h/4 deep"},
+      {"time.settlement_s", "s", "wall time of the models' settlements"},
       {"linearity.first_opens", "-",
        "load over a grain's weight at which the first contact is open, by the linear response "
        "alone: median over the places"},

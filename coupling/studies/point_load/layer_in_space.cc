@@ -31,6 +31,10 @@ void check_spheres(const PackingSetup& p) {
                        ten_million()));
 }
 
+ShapeKind shape_of(const PackingSetup& p) {
+  return is_angular(p) ? ShapeKind::superellipsoid : ShapeKind::sphere;
+}
+
 }  // namespace
 
 double force_of_load(const PointLoadSetup& s) {
@@ -55,11 +59,13 @@ void Layer<3>::check(const Setup& s) {
                     s.load.probe_strain, p.sides));
   }
   if (angular) check_superellipsoid_material(s.material);
-  const ShapeKind shape = angular ? ShapeKind::superellipsoid : ShapeKind::sphere;
+  const ShapeKind shape = shape_of(p);
   check_method("load.rest", s.load.rest, s.material, s.motion, shape);
   check_method("load.method", s.load.method, s.material, s.motion, shape);
-  if (s.load.probe_strain > 0)
-    check_method("load.probe_strain", "newton", s.material, s.motion, shape);
+  if (s.load.probe_strain > 0) {
+    check_quasistatic(fmt::format("load.probe_strain: found {:g}", s.load.probe_strain), "0",
+                      s.material, s.motion, shape);
+  }
   const double depth = falls(s) ? p.depth : 2 * p.rows * p.radius;
   const double fall = falls(s) ? std::max(0.0, loose_height(p) - depth) : 0;
   check_stiff_enough(s.material,
@@ -86,8 +92,7 @@ EngineSettings Layer<3>::settings(const Setup& s, const SpaceGrains& grains, dou
     extremes = extremes_of_superellipsoids(all, s.material.density);
   }
   EngineSettings out =
-      engine_settings(s.material, s.motion, extremes, 1, false, reserve,
-                      is_angular(p) ? ShapeKind::superellipsoid : ShapeKind::sphere);
+      engine_settings(s.material, s.motion, extremes, 1, false, reserve, shape_of(p));
   out.gravity_y = 0;
   out.gravity_z = -s.material.gravity;
   out.cell = layer_cell(p);

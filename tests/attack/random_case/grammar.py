@@ -255,9 +255,9 @@ def point_load(d):
     d.set(load__ramp_time=rounded(d.uni(5, 30) * math.sqrt(r / s.gravity)))
     if d.dim == SPACE and d.chance(0.3):
         d.set(load__radius=rounded(r * d.uni(2, 4)))
-    if d.chance(0.2) and d.shape == "round":
+    if d.chance(0.2) and d.shape in ("round", "superellipsoid"):
         d.set(load__method="newton")
-    elif d.dim == SPACE and d.chance(0.15) and d.shape == "round":
+    elif d.dim == SPACE and d.chance(0.15):
         d.set(load__probe_strain=1e-6, packing__sides="periodic")
     material(d, s)
     # What the quasi-static solver knows (docs/quasistatic.md).

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 #include <vector>
 
 #include "continuum/model.h"
@@ -51,6 +53,23 @@ TEST(Progress, LineNamesEverything) {
   p.done = 4;
   p.fraction = 1;
   EXPECT_EQ(progress_text(p), "100 %  4/4 done");
+}
+
+// A task is spoken of when it has lasted for some seconds, and the next begins anew.
+TEST(Progress, TasksThatLast) {
+  ::testing::internal::CaptureStderr();
+  ProgressLine line(false);
+  {
+    const TaskProgress tasks(line);
+    continuum::tell_progress("quick", 0);
+    continuum::tell_progress("quick", 1);
+    continuum::tell_progress("slow", 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(3100));
+    continuum::tell_progress("slow", 0.4);
+    continuum::tell_progress("next", 0);
+  }
+  continuum::tell_progress("slow", 0.5);  // nobody listens
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "slow  40 %\n");
 }
 
 std::vector<double> told;

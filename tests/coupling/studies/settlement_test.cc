@@ -79,15 +79,17 @@ TEST(Settlement, FollowsTheModuliOfEachDepth) {
   const auto soft = continuum::read_moduli_by_depth(
       folder.write("two.csv", "depth,E,nu\n0,25,0.3\n1,25,0.3\n1.000001,50,0.3\n"));
   const SettlementPlaces at = places();
-  const ModelChoice model{"x", "flamant", {}};
-  const Settlements a = predicted_settlements(model, facts(2), one, at),
-                    b = predicted_settlements(model, facts(2), soft, at);
-  EXPECT_NEAR(b.axis[7], a.axis[7], 1e-9);  // 1.5 m deep
-  SettlementPlaces middle = at;
-  middle.axis = Eigen::VectorXd::Constant(1, 1.0);
-  const double below = predicted_settlements(model, facts(2), one, middle).axis[0];
-  // To a part of the quadrature that has the jump.
-  EXPECT_NEAR(b.axis[2], below + 2 * (a.axis[2] - below), 0.01 * b.axis[2]);
+  for (const int dim : {2, 3}) {
+    const ModelChoice model{"x", dim == 2 ? "flamant" : "boussinesq", {}};
+    const Settlements a = predicted_settlements(model, facts(dim), one, at),
+                      b = predicted_settlements(model, facts(dim), soft, at);
+    EXPECT_NEAR(b.axis[7], a.axis[7], 1e-9);  // 1.5 m deep
+    SettlementPlaces middle = at;
+    middle.axis = Eigen::VectorXd::Constant(1, 1.0);
+    const double below = predicted_settlements(model, facts(dim), one, middle).axis[0];
+    // To a part of the quadrature that has the jump.
+    EXPECT_NEAR(b.axis[2], below + 2 * (a.axis[2] - below), 0.01 * b.axis[2]) << dim;
+  }
 }
 
 TEST(Settlement, MeansAreOfPlacesFarFromTheLoad) {
