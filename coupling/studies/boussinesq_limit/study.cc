@@ -62,6 +62,7 @@ void check_limit(const Case& value) {
         "packing.sides: found \"walls\", allowed: \"periodic\" (layers in space are strained in "
         "cells that repeat)");
   }
+  check_one_load(value);
 }
 
 std::vector<SummaryKey> limit_figures() {

@@ -129,13 +129,7 @@ void check_point_load(const Case& value) {
         fmt::format("packing.radius_small: found {:g}, allowed: up to packing.radius = {:g}",
                     p.radius_small, p.radius));
   }
-  const auto& load = value.get<dem::PointLoadSetup>().load;
-  if (p.dim == 3 && load.weights > 0 && load.force != dem::LoadSetup().force) {
-    throw std::invalid_argument(
-        fmt::format("load.force: found {:g} beside load.weights = {:g}, the load in weights of a "
-                    "sphere; allowed: one of both; to give N, add --set load.weights=0",
-                    load.force, load.weights));
-  }
+  check_one_load(value);
   if (const auto& files = value.get<GrainFiles>().files; p.dim == 3 && !files.empty()) {
     throw std::invalid_argument(fmt::format(
         "grains.files: found {} with packing.dim = 3, allowed: none in 3D", files.size()));

@@ -127,6 +127,9 @@ TEST(BoussinesqLimitRun, RefusesWhatLinearResponseDoesNotKnow) {
                       " --set packing.shape=superellipsoid --set material.law=hertz_elliptic"
                       " --set load.method=damped"),
               HasSubstr("packing.sides"));
+  EXPECT_THAT(refusal("--set packing.dim=3 --set packing.kind=random --set material.law=hertz"
+                      " --set load.method=damped"),
+              HasSubstr("load.force: found 3 beside load.weights = 0.1"));
   EXPECT_THAT(refusal("--set average.map_columns=9"), HasSubstr("map_columns"));
 }
 

@@ -34,6 +34,7 @@ background_damping = 10
 unbalanced_force_ratio = 1e-5
 kinetic_to_elastic_energy = 1e-5
 [load]
+weights = 0
 force = 0.0065
 ramp_time = 0.05
 [ensemble]
