@@ -247,7 +247,7 @@ def linearity(runs):
                   for name in ("gained", "lost", "sliding")]
         places = ("depth_0.25", "depth_0.5", "depth_0.75", "base")
         peaks = ", ".join(f"{run.number(f'response.{place}_w_depths.peaks'):.0f}" for place in places)
-        rows.append(of(run) + [f"{run.number("linearity.weights"):.2g}", *shares, peaks,
+        rows.append(of(run) + [f"{run.number('linearity.weights'):.2g}", *shares, peaks,
                                f"{run.number('moduli.growth'):.2f}"])
     return table(line(head), rows)
 

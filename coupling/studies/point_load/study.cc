@@ -130,6 +130,7 @@ void check_point_load(const Case& value) {
                     p.radius_small, p.radius));
   }
   check_one_load(value);
+  const auto& load = value.get<dem::PointLoadSetup>().load;
   if (const auto& files = value.get<GrainFiles>().files; p.dim == 3 && !files.empty()) {
     throw std::invalid_argument(fmt::format(
         "grains.files: found {} with packing.dim = 3, allowed: none in 3D", files.size()));
