@@ -113,7 +113,7 @@ class Run:
         return z * (1 - (1 + value) ** (-1 / slope)), z / slope * error / (1 + value)
 
 
-#: Misfits whose bound is above, %, are not drawn: the layers scatter too much to tell anything.
+#: Misfits within their noise whose bound is above, %, are not drawn: the layers scatter too much to tell anything.
 UNBOUNDED = 30
 
 
@@ -343,7 +343,7 @@ def draw_misfits(runs, picture):
                 for run in usual(runs):
                     if (run.shape, run.friction) == kind:
                         m = run.misfit(model, region, kernel)
-                        if m.known and m.bound < UNBOUNDED:
+                        if m.known and (m.resolved or m.bound < UNBOUNDED):
                             rows.append((run.depth * shift, m.value, m.low, max(m.high, m.value)))
                             most = max(most, m.high if m.resolved else 0)
                 if not rows:
@@ -358,13 +358,13 @@ def draw_misfits(runs, picture):
             plots += f"set title 'Misfit {title}'\nplot " + ", ".join(curves) + "\nunset key\nunset label\n"
     if not plots:
         fail("no run has ended; nothing to draw")
-    layout = ("set multiplot layout 2,2 margins 0.08,0.99,0.07,0.88 spacing 0.08,0.13\n"
-              "set logscale x\nset xtics (8, 15, 30, 60, 120)\nset grid\n"
-              f"set xrange [6:{wide:g}]\nset yrange [0:{1.15 * most or 100:g}]\nset xlabel 'depth / mean diameter'\n"
+    layout = ("set multiplot layout 2,2 margins 0.08,0.99,0.09,0.88 spacing 0.08,0.13\n"
+              "set logscale x\nset xtics (6, 8, 15, 30, 60, 120)\nset grid\n"
+              f"set xrange [5:{wide:g}]\nset yrange [0:{1.15 * most or 100:g}]\nset xlabel 'depth / mean diameter'\n"
               "set ylabel 'misfit (%)'\nset key top right\n"
               f"set label 1 'one stiffness' at screen 0.3,0.96 center tc rgb '{COLOURS[HOMOGENEOUS]}'\n"
               f"set label 2 'stiffness by depth' at screen 0.75,0.96 center tc rgb '{COLOURS[BY_DEPTH]}'\n")
-    draw(picture, "960,800", data + layout + plots + "unset multiplot\n")
+    draw(picture, "960,840", data + layout + plots + "unset multiplot\n")
 
 
 def main():
