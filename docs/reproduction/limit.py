@@ -287,10 +287,12 @@ def settlements(runs):
 
 
 def costs(runs):
+    """Of the deepest layers of each shape, with the friction that all shapes have."""
     head = ["depth / d", "μ", "grains in a layer", "layers", "CPU min", "deposit and load",
             "rest, moduli, response (clock)", "finite elements (clock)", "memory (MB)"]
     rows = []
-    for run in usual(runs):
+    deepest = {run.shape: run for run in usual(runs) if run.friction == 0.5}  # by depth, see finished()
+    for run in deepest.values():
         dem, fe, all_analysis = (run.number(f"time.{name}") for name in ("dem_cpu_s", "continuum_s", "analysis_s"))
         fe += run.summary.get("time.settlement_s", 0)
         rows.append(of(run) + [f"{run.number('dem.grains'):.0f}", f"{run.layers}", shown(run.cpu / 60), shown(dem / 60),
