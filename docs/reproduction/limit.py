@@ -238,6 +238,22 @@ def causes(runs):
     return table(line(head), rows)
 
 
+def lowered(runs):
+    """The pressure of the base below the load over that of a rough layer of one stiffness: under a load on the
+    surface, and under one on the centres of the loaded grains, which is that on a layer so much less deep."""
+    head = ["depth / d", "μ", "centres of the loaded grains below the surface / d", "base below the load, over one "
+            "stiffness: load on the surface", "load on their centres"]
+    rows = []
+    for run in usual(runs):
+        below = run.number("response.load_depth") / run.number("layer.depth")
+        over = run.excess(HOMOGENEOUS, "w_depths", 1.0)
+        if math.isfinite(below) and math.isfinite(over[0]):
+            less = (1 - below) ** (2 if run.shape in SPACE else 1)  # the stress goes as F/h, in space F/h^2
+            rows.append(of(run) + [f"{below * run.depth:.2f}"]
+                        + [f"{share * (1 + over[0]):.2f} ± {share * over[1]:.2f}" for share in (1, less)])
+    return table(line(head), rows)
+
+
 def linearity(runs):
     head = ["depth / d", "μ", "load in weights of a grain", "contacts that close", "open", "begin to slide",
             "peaks at 0.25, 0.5, 0.75 h and on the base", "E at the base over that at the surface"]
@@ -326,7 +342,7 @@ def anisotropy(runs):
 
 TABLES = (misfits, bases, causes, linearity, costs)
 #: Tables of figures that not every run has: of none, there is no table.
-FURTHER = (ends, settlements)
+FURTHER = (lowered, ends, settlements)
 
 
 def draw_misfits(runs, picture):

@@ -1046,6 +1046,16 @@ def test_a_load_that_acts_deeper_is_found_on_the_axis(tmp_path):
     assert run.friction == 0.2
 
 
+def test_a_load_on_the_centres_of_loaded_grains_is_one_on_a_layer_less_deep(tmp_path):
+    head = "profile,depth_m,x_m,simulation_Pa,standard_error_Pa,homogeneous_rough_Pa\n"
+    runs = [layers_under_loads(tmp_path, name, settings, head + '"base, w = 0.01 m",0.1,0,3,0.1,2\n',
+                               **{"response.load_depth": 0.02})
+            for name, settings in (("deep-8", []), ("spheres-6", ['sweep.values=["spheres_6"]']))]
+    disks, spheres = limit.lowered(runs).splitlines()[2:]
+    assert disks.endswith("| 0.5 | 2.00 | 1.50 ± 0.05 | 1.20 ± 0.04 |")
+    assert spheres.endswith("| 0.5 | 2.00 | 1.50 ± 0.05 | 0.96 ± 0.03 |")
+
+
 def test_larger_ensembles_take_the_place_of_smaller_ones(tmp_path):
     runs = [layers_under_loads(tmp_path, name, settings) for name, settings in (
         ("deep-8-mu-0", []), ("deep-8-mu-0-more", []), ("deep-8-grains-3", ["response.grains=3"]),
