@@ -44,7 +44,7 @@ double round_down(double value);
 /// which asks for the solver; `allowed`: the value that does not.
 void check_quasistatic(const std::string& asked, const char* allowed, const MaterialSetup& material,
                        const MotionSetup& motion, ShapeKind shape);
-/// The same of a key that says "newton" or "damped".
+/// Calls check_quasistatic where the key says "newton" instead of "damped".
 void check_method(const char* key, const std::string& method, const MaterialSetup& material,
                   const MotionSetup& motion, ShapeKind shape = ShapeKind::disk);
 

@@ -121,6 +121,11 @@ dropped() { # NAME MEMBER: thirty piles by implicit motion, judged as the explic
   measure summary liffman-dropped "dropped-$2/summary.json" --member "$2" --keys dip. dem.repose_angle
 }
 dropped implicit implicit
+# Its two runs of which every pile comes to rest.
+[ ! -e implicit-4.h5 ] || {
+  run dropped-resting liffman-dropped --set 'grains.files=["implicit-2.h5","implicit-4.h5"]' --set ensemble.realizations=12
+  measure summary liffman-dropped dropped-resting/summary.json --member implicit_resting --keys dip.
+}
 dropped coulomb implicit_coulomb --set material.friction=0.5
 for name in equal unlike coulomb coulomb_unlike pentagons; do
   record=$here/states/liffman-grains/${name}_968.json

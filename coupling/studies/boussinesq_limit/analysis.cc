@@ -36,7 +36,7 @@ constexpr std::array kRests{1e-9, 1e-8, 1e-7};
 // soft they need many unknowns for more. In space theirs would pass most_unknowns, so they keep
 // their own tolerances, 0.5 % of F/h^2 for the layer and 1 % of F/r^2 for the half space.
 constexpr const char* kFiniteElementTolerance = "1e-3";
-// What takes long, for whoever waits.
+// Names of the long parts, for whoever waits.
 constexpr const char *kModuli = "moduli of the layers", *kResponse = "response of the layers";
 // Models whose settlement is compared: those of a layer on which no contact of the base slides.
 const std::string kSettledByOne = "homogeneous_rough", kSettledByDepth = "by_depth_rough";

@@ -16,8 +16,8 @@ constexpr double kNoTime = 1e-15;  // s
 // from its state, and find it at rest too.
 constexpr double kRestShare = 0.1;
 constexpr double kLeastRatio = 1e-12;  // that the solver takes
-// Where the common normals of superellipsoids are known as well as an engine seeks them, this share
-// of the forces may be left (2e-6 was found); the solver seeks them to the last digits.
+// Share of the forces that an engine may find left where the solver has found rest: it seeks the
+// common normals of superellipsoids less far (2e-6 was found) than the solver, to the last digits.
 constexpr double kLeftByNormals = 1e-5;
 
 /// Ratio, steps and iterations of the solver.
