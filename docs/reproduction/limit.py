@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Prints the tables of docs/cases/boussinesq-limit.md and of the pentagons of point-load-packings.md, or puts them into
-the pages, and draws the picture.
+"""Prints the tables of docs/cases/boussinesq-limit.md, boussinesq-limit-tables.md and the pentagons of
+point-load-packings.md, or puts them into the pages, and draws the picture.
 
     docs/reproduction/limit.py [--write] [--picture PICTURE] [--states FOLDER]
 
@@ -30,6 +30,7 @@ from record import write_file  # noqa: E402
 from tables import line, put, table  # noqa: E402
 
 PAGE = HERE.parent / "cases" / "boussinesq-limit.md"
+DETAILS = PAGE.with_name("boussinesq-limit-tables.md")
 PACKINGS = PAGE.with_name("point-load-packings.md")
 ISOTROPIC = HERE / "results" / "point-load-pentagons.profiles.md"  # has the isotropic layer, smooth base
 LISTS = ("boussinesq", "boussinesq-space")
@@ -340,9 +341,8 @@ def anisotropy(runs):
     return table(line(["layer", *(f"{at:g} $h$" for at in (0.25, 0.5, 0.75)), "base"]), rows)
 
 
-TABLES = (misfits, bases, causes, linearity, costs)
-#: Tables of figures that not every run has: of none, there is no table.
-FURTHER = (lowered, ends, settlements)
+#: The tables of each page. Some are of figures that not every run has: of none, there is no table.
+TABLES = {PAGE: (misfits, causes, lowered, costs), DETAILS: (bases, linearity, ends, settlements), PACKINGS: (anisotropy,)}
 
 
 def draw_misfits(runs, picture):
@@ -392,15 +392,14 @@ def main():
     options.add_argument("--write", action="store_true", help="put the tables into the pages")
     given = options.parse_args()
     runs = finished(given.states)
-    made = [one(runs) for one in TABLES]
-    made += [new for new in (one(runs) for one in FURTHER) if new.count("\n") > 2]
+    made = {page: [new for new in (one(runs) for one in tables) if new.count("\n") > 2] for page, tables in TABLES.items()}
     if given.picture:
         draw_misfits(runs, given.picture)
-    if given.write:
-        write_file(PAGE, put(PAGE.read_text(), made, PAGE).encode())
-        write_file(PACKINGS, put(PACKINGS.read_text(), [anisotropy(runs)], PACKINGS).encode())
-    elif not given.picture:
-        print("\n".join([*made, anisotropy(runs)]), end="")
+    for page, tables in made.items():
+        if given.write:
+            write_file(page, put(page.read_text(), tables, page).encode())
+        elif not given.picture:
+            print("\n".join(tables))
 
 
 if __name__ == "__main__":
