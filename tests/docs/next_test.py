@@ -17,7 +17,8 @@ import json, pathlib, sys
 words = sys.argv[1:]
 folder = pathlib.Path(words[words.index("-o") + 1])
 settings = dict(one.split("=", 1) for at, one in enumerate(words) if words[at - 1] == "--set")
-print("no equilibrium" if settings["ends"] == "3" else "rests", words[:2], flush=True)
+print("no equilibrium" if settings["ends"] == "3" else "rests", words[:2],
+      words[words.index("--threads") + 1], flush=True)
 value = folder / "deep_8"
 value.mkdir(parents=True)
 (value / "profiles.csv").write_text("x_m,simulation_N/m\\n0,1\\n")
@@ -50,9 +51,9 @@ def repository(tmp_path, monkeypatch):
             file.chmod(mode)
             return file
 
-        def next(self):
-            return subprocess.run([sys.executable, tmp_path / SCRIPT, tmp_path / "layers.txt"], cwd=tmp_path,
-                                  capture_output=True, text=True)
+        def next(self, *options):
+            return subprocess.run([sys.executable, tmp_path / SCRIPT, tmp_path / "layers.txt", *options],
+                                  cwd=tmp_path, capture_output=True, text=True)
 
         def list_runs(self, *lines):
             self.write("layers.txt", "commit first\n" + "".join(f"{one}\n" for one in lines))
@@ -99,7 +100,7 @@ def test_a_run_that_fails_names_its_log_and_commits_nothing(repository):
     log = repository.folder / "build/runs/first/b/log.txt"
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == f"next.py: b: the program ended with 3: {log}\n"
-    assert log.read_text() == "no equilibrium ['run', 'cases/layer.toml']\n"
+    assert log.read_text() == "no equilibrium ['run', 'cases/layer.toml'] 1\n"
     assert repository.git("rev-parse", "HEAD") == before and repository.git("status", "--porcelain") == ""
 
 
@@ -108,3 +109,9 @@ def test_a_run_whose_time_was_over_stays_missing(repository):
     done = repository.next()
     assert done.returncode == 0 and done.stdout.startswith("c: not ended yet, "), done.stderr
     assert repository.git("rev-parse", "HEAD") == before and repository.git("status", "--porcelain") == ""
+
+
+def test_a_run_has_the_threads_that_are_asked_for(repository):
+    repository.list_runs("d 7 layer ends=0 output.snapshots=false")
+    assert repository.next("--threads", "2").returncode == 0
+    assert (repository.folder / "build/runs/first/d/log.txt").read_text() == "rests ['run', 'cases/layer.toml'] 2\n"

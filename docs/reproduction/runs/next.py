@@ -10,8 +10,8 @@ The list is committed. Its first line names the tag or commit that computes, the
     NAME SEED CASE [KEY=VALUE ...]
 
 with settings in quotes where they hold blanks. The program of that tag is built once, in a clone of
-its own (build/runs/TAG). A run has one realization, unless it sets ensemble.realizations, one thread and
-the lowest priority. When the time is over it writes a checkpoint, and the
+its own (build/runs/TAG). A run has one realization, unless it sets ensemble.realizations, the lowest
+priority and one thread, or --threads of them, to the same bits. When the time is over it writes a checkpoint, and the
 next call goes on to the same bits. Several calls at once take different runs. A finished run leaves
 two files in docs/reproduction/states/LIST/, which are committed: NAME.h5.xz, its states compacted
 (states/compact.py), and NAME.json with seed, commit, settings, processor time, the SHA-256 of the
@@ -167,7 +167,7 @@ def pack_unfinished(name, folder, packed):
     git("commit", "--quiet", "-m", f"Runs: {name} so far", "--", str(packed))
 
 
-def compute(source, run, folder, deadline):
+def compute(source, run, folder, deadline, threads):
     """Goes on with a run until it has ended (True) or the time is over (False)."""
     name, seed, case, settings = run
     results = folder / "results"
@@ -176,7 +176,7 @@ def compute(source, run, folder, deadline):
         return True
     unpack_packings(source, settings)
     command = ["nice", "-n", "19", "build/release/grainfield", "run", f"cases/{case}.toml", "-o",
-               str(results), "--threads", "1"]
+               str(results), "--threads", str(threads)]
     one = [] if any(s.startswith("ensemble.realizations=") for s in settings) else [
         "ensemble.realizations=1"]
     for setting in [f"ensemble.seed={seed}", *one, *settings]:
@@ -259,6 +259,7 @@ def main():
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("list", type=pathlib.Path, help="the runs")
     options.add_argument("--minutes", type=float, default=150, help="the most this call may take")
+    options.add_argument("--threads", type=int, default=1, help="of the run")
     options.add_argument("--pack", action="store_true", help="commit the checkpoint of a run that has not ended")
     given = options.parse_args()
     deadline = time.monotonic() + 60 * given.minutes - GRACE
@@ -283,7 +284,7 @@ def main():
         unpack_unfinished(folder, packed)
         if deadline - time.monotonic() < 60 * LEAST_MINUTES:
             print("built; no time left for a run", flush=True)
-        elif compute(source, run, folder, deadline):
+        elif compute(source, run, folder, deadline, given.threads):
             keep(run, tag, commit, folder, states)
         elif given.pack:
             pack_unfinished(run[0], folder, packed)
