@@ -62,6 +62,14 @@ std::vector<Parameter> layer_parameters() {
       whole_number("cells", "cells over the depth before refinement", "numerics", 2, 1, 1000)};
 }
 
+Parameter load_depth() {
+  return number("load_depth", "h",
+                "depth of the load below the surface, over h; the load is spread over a Gaussian "
+                "whose standard deviation is a fifth of this depth, and tolerance is over F/r (3D: "
+                "F/r2), r the distance from it, up to h; 0: a point of the surface",
+                "elasticity", 0, 0, 0.9);
+}
+
 // The first mesh fills the layer with cells of the given degree.
 FirstMesh layer_mesh(const Settings& s, bool space) {
   const double down = number_of(s, "cells") * nonzero_or(s, "degree", space ? 2 : 3);
@@ -129,7 +137,9 @@ ModelInfo elastic_layer() {
   return {"fe_elastic_layer",
           "elastic layer on a rigid base under a point load, finite elements",
           0,
-          joined({common_parameters(), layer_parameters(),
+          joined({common_parameters(),
+                  layer_parameters(),
+                  {load_depth()},
                   numerical_parameters("over F/h (3D: F/h2); 0: 2e-4 in 2D, 5e-3 in 3D", 8)}),
           in_fe_library("fe_elastic_layer"),
           solver_figures({}),
@@ -204,7 +214,10 @@ ModelInfo transverse_layer() {
       "elastic layer with a vertical axis of symmetry on a rigid base under a point load, finite "
       "elements",
       3,
-      joined({point_load(), transverse_parameters(), layer_parameters(),
+      joined({point_load(),
+              transverse_parameters(),
+              layer_parameters(),
+              {load_depth()},
               numerical_parameters("over F/h2; 0: 5e-3", 6)}),
       in_fe_library("fe_transverse_layer"),
       solver_figures({}),

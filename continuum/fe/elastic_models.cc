@@ -5,6 +5,9 @@
 // holds the singularity, and a smooth rest, which the elements solve for: its data are minus the
 // closed form's displacement and traction on base and sides. The point load is met exactly.
 //
+// Layer with the load below its surface: no closed form enters. The load is a smooth body force,
+// around which the first mesh is refined in proportion to the distance.
+//
 // Half space: no closed form enters. The load is a uniform pressure on a small patch, and the mesh,
 // whose cells grow with their distance from the load, reaches so far (each doubling of the radius
 // costs the same number of cells) that holding its end fixed is not felt at the depth of interest.
@@ -168,8 +171,13 @@ class ElasticLayer : public BoxModel<dim> {
         h_(number_of(s, "h")),
         ratio_(number_of(s, "half_width")),
         cells_(static_cast<unsigned int>(number_of(s, "cells"))),
+        below_(number_of(s, "load_depth") * h_),
         rough_(s.at("base") == "rough"),
-        free_sides_(s.at("sides") == "free") {}
+        free_sides_(s.at("sides") == "free") {
+    if (below_ == 0) return;
+    medium_.stress = [](const Point<dim>&) { return Stress<dim>(); };
+    medium_.displacement = [](const Point<dim>&) { return Vector<dim>(); };
+  }
 
  protected:
   void build_mesh(dealii::parallel::distributed::Triangulation<dim>& mesh) override {
@@ -181,6 +189,7 @@ class ElasticLayer : public BoxModel<dim> {
     for (int d = 0; d < dim - 1; ++d) high[d] = this->half_width_;
     low[dim - 1] = -h_;
     dealii::GridGenerator::subdivided_hyper_rectangle(mesh, divisions, low, high, true);
+    if (below_ > 0) refine_around_load(mesh);
   }
 
   ElasticProblem<dim> problem() const override {
@@ -190,7 +199,14 @@ class ElasticLayer : public BoxModel<dim> {
     };
     ElasticProblem<dim> equations;
     medium_.put_stiffness(equations);
-    if (medium_.stiffness_at) {
+    if (below_ > 0) {
+      equations.body_force = [this](const Point<dim>& p) {
+        Vector<dim> force;
+        const double peak = this->load_ / std::pow(std::sqrt(2 * M_PI) * spread(), dim);
+        force[dim - 1] = -peak * std::exp(-p.distance_square(load()) / (2 * spread() * spread()));
+        return force;
+      };
+    } else if (medium_.stiffness_at) {
       equations.initial_stress = [this](const Point<dim>& p) {
         return stress_of<dim>(medium_.stiffness_at(p) - medium_.stiffness, medium_,
                               medium_.stress(p));
@@ -216,19 +232,44 @@ class ElasticLayer : public BoxModel<dim> {
         if (x <= ratio_) points.push_back(this->horizontal_and_height(x * h_, -depth * h_));
     return points;
   }
-  double scale(const Point<dim>&) const override {
-    return std::max(std::abs(this->load_) / std::pow(h_, dim - 1),
+  /// At a load below the surface that of its distance, up to the depth.
+  double scale(const Point<dim>& probe) const override {
+    const double from = below_ > 0 ? std::clamp(probe.distance(load()), spread(), h_) : h_;
+    return std::max(std::abs(this->load_) / std::pow(from, dim - 1),
                     std::numeric_limits<double>::min());
   }
   Stress<dim> closed_part(const Point<dim>& p) const override {
     const Stress<dim> stress = medium_.stress(p);
     return medium_.stiffness_at ? stress_of<dim>(medium_.stiffness_at(p), medium_, stress) : stress;
   }
+  /// Jumps at a load below the surface would otherwise draw all the cells.
+  double refinement_weight(const Point<dim>& p) const override {
+    return below_ > 0 ? std::min(1., std::pow(2 * p.distance(load()) / h_, dim / 2.)) : 1;
+  }
 
  private:
+  Point<dim> load() const { return this->horizontal_and_height(0, -below_); }
+  /// Standard deviation of a load below the surface.
+  double spread() const { return below_ / 5; }
+
+  // Cells at the load no larger than its spread, elsewhere than half their distance from it.
+  void refine_around_load(dealii::parallel::distributed::Triangulation<dim>& mesh) const {
+    const int levels = std::max(0, static_cast<int>(std::ceil(std::log2(h_ / cells_ / spread()))));
+    for (int level = 0; level < levels; ++level) {
+      for (const auto& cell : mesh.active_cell_iterators()) {
+        if (!cell->is_locally_owned()) continue;
+        const double edge = cell->extent_in_direction(dim - 1);
+        const double distance = cell->center().distance(load()) - edge * std::sqrt(dim) / 2;
+        if (edge > std::max(spread(), distance / 2)) cell->set_refine_flag();
+      }
+      mesh.execute_coarsening_and_refinement();
+    }
+  }
+
   Medium<dim> medium_;
   double h_, ratio_;
   unsigned int cells_;
+  double below_;  // depth of the load
   bool rough_, free_sides_;
 };
 

@@ -12,6 +12,7 @@ struct ModelChoice {
   std::string label;
   std::string name;
   continuum::Settings settings;
+  double below = 0;  ///< m: the model's surface is so far below that of the grains
 };
 
 /// What a text is that may name a model with settings.

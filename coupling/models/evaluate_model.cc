@@ -125,6 +125,17 @@ std::map<std::string, double> over_grains_height(std::map<std::string, double> f
   return figures;
 }
 
+Eigen::MatrixXd stress_at(const ModelChoice& choice, continuum::Model& model,
+                          Eigen::MatrixXd points) {
+  points.rightCols<1>().array() += choice.below;
+  Eigen::MatrixXd out = model.stress(points);
+  if (choice.below > 0) {
+    for (Eigen::Index k = 0; k < points.rows(); ++k)
+      if (points.row(k).tail<1>().value() >= 0) out.row(k).setZero();
+  }
+  return out;
+}
+
 Evaluation evaluate_model(const ModelChoice& choice, const RunFacts& facts,
                           const std::vector<PointSet>& sets) {
   const auto start = std::chrono::steady_clock::now();
@@ -134,7 +145,7 @@ Evaluation evaluate_model(const ModelChoice& choice, const RunFacts& facts,
   const double depth = family == "half plane" || family == "half space" ? 0 : facts.height;
   const Eigen::MatrixXd stresses =
       ObservationOperator(sets, depth).seen([&](const Eigen::MatrixXd& nodes) {
-        return model->stress(nodes);
+        return stress_at(choice, *model, nodes);
       });
   Evaluation out;
   Eigen::Index row = 0;

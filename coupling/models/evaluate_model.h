@@ -33,6 +33,11 @@ void require_models(const std::vector<ModelChoice>& choices, int dim = 2);
 /// For people: "layer (base=rough)".
 std::string model_label(const ModelChoice& choice);
 
+/// Stress of the choice's model at points of the grains' frame, tension positive; none above its
+/// surface.
+Eigen::MatrixXd stress_at(const ModelChoice& choice, continuum::Model& model,
+                          Eigen::MatrixXd points);
+
 struct Evaluation {
   std::vector<Eigen::MatrixXd> stresses;  ///< one per point set, tension positive
   std::map<std::string, double> figures;  ///< of the model

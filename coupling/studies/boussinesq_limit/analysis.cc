@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <set>
 
 #include "continuum/progress.h"
 #include "coupling/averaging/ensemble.h"
@@ -34,12 +35,13 @@ namespace {
 constexpr std::array kRests{1e-9, 1e-8, 1e-7};
 // Finite elements of the plane are refined to this, far below the grains' noise: where shear is
 // soft they need many unknowns for more. In space theirs would pass most_unknowns, so they keep
-// their own tolerances, 0.5 % of F/h^2 for the layer and 1 % of F/r^2 for the half space.
-constexpr const char* kFiniteElementTolerance = "1e-3";
+// their own tolerances, 0.5 % of F/h^2 for the layer and 1 % of F/r^2 for the half space, which is
+// that of a load below the surface, too.
+constexpr const char *kFiniteElementTolerance = "1e-3", *kToleranceBelow = "1e-2";
 // Names of the long parts, for whoever waits.
 constexpr const char *kModuli = "moduli of the layers", *kResponse = "response of the layers";
 // Models whose settlement is compared: those of a layer on which no contact of the base slides.
-const std::string kSettledByOne = "homogeneous_rough", kSettledByDepth = "by_depth_rough";
+const std::set<std::string> kSettled{"homogeneous_rough", "by_depth_rough", "by_depth_centres"};
 
 dem::Materials materials_of(const dem::MaterialSetup& m) {
   dem::Materials out;
@@ -135,8 +137,9 @@ class Analysis {
   }
 
   // A table that models read.
-  std::string write_table(const std::string& name, const std::vector<SlabModuli>& slabs) {
-    const std::string text = moduli_table(slabs, depth_, false);
+  std::string write_table(const std::string& name, const std::vector<SlabModuli>& slabs,
+                          double depth) {
+    const std::string text = moduli_table(slabs, depth, false);
     out_.texts.emplace_back("moduli_" + name, text);
     const auto folder = tables_of(out_);
     std::error_code error;
@@ -154,9 +157,39 @@ class Analysis {
     return out;
   }
 
+  // Mean depth of the loaded grains' centres, m.
+  double centres() const {
+    double below = 0;
+    for (const double one : figures_.at("response.load_depth")) below += one;
+    return below / static_cast<double>(layers_.size());
+  }
+
+  // The model of what is below the centres of the loaded grains, where the contacts end.
+  ModelChoice below_centres(ModelChoice model) const {
+    model.below = centres();
+    if (model.name.ends_with("_layer"))
+      model.settings["h"] = fmt::format("{:.9g}", depth_ - model.below);
+    return model;
+  }
+  std::vector<SlabModuli> below_centres(std::vector<SlabModuli> slabs) const {
+    for (SlabModuli& slab : slabs) slab.depth -= centres();
+    const auto last = slabs.end() - 1;
+    slabs.erase(slabs.begin(),
+                std::find_if(slabs.begin(), last, [](const SlabModuli& s) { return s.depth > 0; }));
+    return slabs;
+  }
+
+  // The whole layer with the load inside it, as deep as the centres of the loaded grains.
+  ModelChoice loaded_inside(const std::string& moduli) const {
+    ModelChoice out = finite_elements("fe_elastic_layer", moduli);
+    out.settings["load_depth"] = fmt::format("{:.6g}", centres() / depth_);
+    if (dim_ == 3) out.settings["tolerance"] = kToleranceBelow;
+    return out;
+  }
+
   // Numbers of a model from the same measurement.
-  ModelChoice of_constants(const std::string& label, const std::string& name) const {
-    ModelChoice out{label, name, {}};
+  ModelChoice of_constants(const std::string& name) const {
+    ModelChoice out{"", name, {}};
     for (std::size_t k = 0; k < 5; ++k)
       out.settings[limit_constants()[k]] = fmt::format("{:.9g}", whole_.mean[k]);
     return out;
@@ -174,29 +207,39 @@ class Analysis {
         slabs.back().mean[SlabConstants::e_v] / slabs.front().mean[SlabConstants::e_v];
     out_.summary["moduli.growth"] = growth;
     out_.summary["moduli.residual"] = whole_.residual_transverse;
-    const std::string by_depth = write_table("by_depth.csv", slabs);
-    const std::string homogeneous = write_table("homogeneous.csv", {whole_});
+    const std::string by_depth = write_table("by_depth.csv", slabs, depth_);
+    const std::string homogeneous = write_table("homogeneous.csv", {whole_}, depth_);
     const bool space = dim_ == 3;
-    for (const char* base : {"rough", "smooth"}) {
-      ModelChoice one = space ? of_constants("", "transverse_layer")
-                              : finite_elements("fe_elastic_layer", homogeneous);
-      one.label = fmt::format("homogeneous_{}", base);
-      one.settings["base"] = base;
-      models.push_back(one);
-      if (one.label == kSettledByOne) settling_.emplace_back(one, homogeneous);
-    }
-    models.push_back(space ? of_constants("", "transverse_half_space")
-                           : finite_elements("fe_elastic_half_space", homogeneous));
-    models.back().label = "homogeneous_half_space";
+    const auto add = [&](const std::string& label, ModelChoice model, const std::string& base) {
+      model.label = label;
+      if (!base.empty()) model.settings["base"] = base;
+      if (kSettled.contains(label))
+        settling_.emplace_back(model, label.starts_with("by_depth") ? by_depth : homogeneous);
+      models.push_back(std::move(model));
+    };
+    const auto add_all = [&](const std::string& moduli, const ModelChoice& layer,
+                             const ModelChoice& half_space, const ModelChoice& lower_layer,
+                             const ModelChoice& lower_half_space) {
+      for (const char* base : {"rough", "smooth"}) add(moduli + "_" + base, layer, base);
+      add(moduli + "_half_space", half_space, "");
+      add(moduli + "_centres", below_centres(lower_layer), "rough");
+      add(moduli + "_half_space_centres", below_centres(lower_half_space), "");
+    };
+    const auto layer = [&](const std::string& table) {
+      return finite_elements("fe_elastic_layer", table);
+    };
+    const auto half_space = [&](const std::string& table) {
+      return finite_elements("fe_elastic_half_space", table);
+    };
+    const ModelChoice even = space ? of_constants("transverse_layer") : layer(homogeneous);
+    const ModelChoice even_half_space =
+        space ? of_constants("transverse_half_space") : half_space(homogeneous);
+    add_all("homogeneous", even, even_half_space, even, even_half_space);
     if (!response_.finite_elements) return;
-    for (const char* base : {"rough", "smooth"}) {
-      models.push_back(finite_elements("fe_elastic_layer", by_depth));
-      models.back().label = fmt::format("by_depth_{}", base);
-      models.back().settings["base"] = base;
-      if (models.back().label == kSettledByDepth) settling_.emplace_back(models.back(), by_depth);
-    }
-    models.push_back(finite_elements("fe_elastic_half_space", by_depth));
-    models.back().label = "by_depth_half_space";
+    const std::string lower =
+        write_table("by_depth_below_centres.csv", below_centres(slabs), depth_ - centres());
+    add_all("by_depth", layer(by_depth), half_space(by_depth), layer(lower), half_space(lower));
+    add("by_depth_inside", loaded_inside(by_depth), "rough");
   }
 
   SeenThrough through(double width) const {

@@ -93,7 +93,7 @@ Settlements predicted_settlements(const ModelChoice& layer, const RunFacts& fact
     }
   }
   const auto model = continuum::make_model(layer.name, filled_settings(layer, facts));
-  const Eigen::MatrixXd stress = model->stress(points);
+  const Eigen::MatrixXd stress = stress_at(layer, *model, points);
   for (row = 0; row < points.rows(); ++row) {
     const double strain = vertical_strain(moduli.at(-points(row, up)), stress.row(row));
     *lines[static_cast<std::size_t>(row / kOfLine)].sum -= lengths[row] * strain;

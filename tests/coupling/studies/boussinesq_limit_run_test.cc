@@ -68,8 +68,10 @@ TEST(BoussinesqLimitRun, FromCaseToReport) {
   EXPECT_LT(number(s, "linearity.first_slides"), number(s, "linearity.first_opens"));
   EXPECT_LT(number(s, "linearity.first_changes"), number(s, "linearity.hundredth_changes"));
   EXPECT_GT(number(s, "linearity.hundredth_changes.standard_error"), 0);
-  for (const char* model : {"homogeneous_rough", "homogeneous_smooth", "homogeneous_half_space",
-                            "by_depth_rough", "by_depth_smooth", "by_depth_half_space"}) {
+  for (const char* model :
+       {"homogeneous_rough", "homogeneous_smooth", "homogeneous_half_space", "by_depth_rough",
+        "by_depth_smooth", "by_depth_half_space", "homogeneous_centres", "by_depth_centres",
+        "by_depth_inside", "homogeneous_half_space_centres", "by_depth_half_space_centres"}) {
     const std::string key = std::string("limit.") + model;
     for (const char* region : {".base", ".axis", ".all"}) {
       for (const char* width : {".w_diameters", ".w_depths"}) {
@@ -82,7 +84,7 @@ TEST(BoussinesqLimitRun, FromCaseToReport) {
     }
   }
   // Few disks of a pressed lattice: near the prediction, not at it.
-  for (const char* model : {"homogeneous_rough", "by_depth_rough"}) {
+  for (const char* model : {"homogeneous_rough", "by_depth_rough", "by_depth_centres"}) {
     for (const char* where : {".surface", ".axis"}) {
       const std::string key = std::string("settlement.") + model + where;
       EXPECT_NEAR(number(s, key), 1, 0.5) << key;
@@ -92,14 +94,23 @@ TEST(BoussinesqLimitRun, FromCaseToReport) {
   const continuum::ModuliByDepth table =
       continuum::read_moduli_by_depth(folder / "out/moduli_by_depth.csv");
   EXPECT_NO_THROW(table.require_cover(number(s, "layer.depth")));
-  EXPECT_THAT(
-      read_text(folder / "out/displacements.csv"),
-      HasSubstr("realization,place,at_over_h,displacement,homogeneous_rough,by_depth_rough\n"));
+  EXPECT_THAT(read_text(folder / "out/displacements.csv"),
+              HasSubstr("realization,place,at_over_h,displacement,homogeneous_rough,by_depth_rough,"
+                        "by_depth_centres\n"));
   // Labels name the table of a model without its folder, which is gone.
   EXPECT_THAT(read_text(folder / "out/verdict.md"), HasSubstr("(base=rough, moduli=by_depth.csv"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out/.models_of_realization_000"));
   // The surface is level with the highest disks of the lattice.
   EXPECT_NEAR(number(s, "response.load_depth"), 0.0045, 1e-4);
+  // Half a depth below the surface the load on the layer below these centres is nearer by twice
+  // their share of the depth. Material above the load takes that back.
+  const double share = number(s, "response.load_depth") / number(s, "layer.depth");
+  const auto peak = [&](const std::string& model) {
+    return number(s, "compare." + model + ".peak_over_F_per_h");
+  };
+  for (const std::string moduli : {"homogeneous", "by_depth"})
+    EXPECT_NEAR(peak(moduli + "_centres") / peak(moduli + "_rough"), 1 + 2 * share, 0.5 * share);
+  EXPECT_NEAR(peak("by_depth_inside") / peak("by_depth_rough"), 1, 0.5 * share);
   EXPECT_LE(number(s, "moduli.unbalanced_force_ratio"), 1e-9);
   EXPECT_THAT(read_text(folder / "out/report.html"), HasSubstr("by_depth_rough"));
 

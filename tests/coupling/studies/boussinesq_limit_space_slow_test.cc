@@ -71,7 +71,7 @@ TEST(BoussinesqLimitSpaceSlow, OfSuperellipsoids) {
   EXPECT_GT(number("moduli.G_v"), 0);
   // One slab: the moduli by depth are those of the whole, so finite elements and the closed forms
   // predict the same, stress and settlement.
-  for (const char* base : {"rough", "smooth", "half_space"}) {
+  for (const char* base : {"rough", "smooth", "half_space", "centres"}) {
     const auto peak = [&](const char* model) {
       return number(std::string("compare.") + model + base + ".peak_over_F_per_h");
     };
