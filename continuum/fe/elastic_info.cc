@@ -64,7 +64,8 @@ std::vector<Parameter> layer_parameters() {
 
 Parameter load_depth() {
   return number("load_depth", "h",
-                "depth of the load below the surface, over h; the load is spread over a Gaussian "
+                "depth of the load below the surface, over h, from 1e-4 on; the load is spread "
+                "over a Gaussian "
                 "whose standard deviation is a fifth of this depth, and tolerance is over F/r (3D: "
                 "F/r2), r the distance from it, up to h; 0: a point of the surface",
                 "elasticity", 0, 0, 0.9);

@@ -175,6 +175,10 @@ class ElasticLayer : public BoxModel<dim> {
         rough_(s.at("base") == "rough"),
         free_sides_(s.at("sides") == "free") {
     if (below_ == 0) return;
+    if (below_ < kLeastBelow * h_)
+      throw BadParameter(
+          fmt::format("model {}: load_depth = {} is out of range; allowed: 0, or {} to 0.9", name,
+                      below_ / h_, kLeastBelow));
     medium_.stress = [](const Point<dim>&) { return Stress<dim>(); };
     medium_.displacement = [](const Point<dim>&) { return Vector<dim>(); };
   }
@@ -248,6 +252,7 @@ class ElasticLayer : public BoxModel<dim> {
   }
 
  private:
+  static constexpr double kLeastBelow = 1e-4;
   Point<dim> load() const { return this->horizontal_and_height(0, -below_); }
   /// Standard deviation of a load below the surface.
   double spread() const { return below_ / 5; }

@@ -28,6 +28,7 @@ Field model_field(const ModelChoice& choice, const RunFacts& facts, const Eigen:
   for (const auto& [name, setting] : filled_settings(choice, facts)) {
     out.attributes["model." + name] = setting;
   }
+  if (choice.below > 0) out.attributes["model.below"] = fmt::format("{:.9g}", choice.below);
   return out;
 }
 

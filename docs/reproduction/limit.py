@@ -5,10 +5,10 @@ point-load-packings.md, or puts them into the pages, and draws the picture.
     docs/reproduction/limit.py [--write] [--picture PICTURE] [--states FOLDER]
 
 Reads the runs of the LISTS in states/boussinesq/ and states/boussinesq-space/ (runs/next.py computes them): the
-figures in NAME.json (those that it lacks in states/boussinesq-ends/NAME.json), and on the axis NAME.profiles.csv
-where it is kept. A misfit is the root of the squared distance of the grains' mean from a prediction less the
-variance of that mean, over the root of the squared prediction; where it is within its noise, "<" and the
-upper end of 95 % stand for it. "–" has not run.
+figures in NAME.json, and on the axis NAME.profiles.csv where it is kept. What they lack is taken from LATER runs of the
+same layers, states/LATER/NAME.json. A misfit is the root of the squared distance of the grains' mean from a prediction
+less the variance of that mean, over the root of the squared prediction; where it is within its noise, "<" and the upper
+end of 95 % stand for it. "–" has not run.
 --write replaces the tables of the pages that have the same heads. Needs gnuplot for the picture.
 """
 import argparse
@@ -34,9 +34,10 @@ DETAILS = PAGE.with_name("boussinesq-limit-tables.md")
 PACKINGS = PAGE.with_name("point-load-packings.md")
 ISOTROPIC = HERE / "results" / "point-load-pentagons.profiles.md"  # has the isotropic layer, smooth base
 LISTS = ("boussinesq", "boussinesq-space")
-ENDS = "boussinesq-ends"
+LATER = ("boussinesq-centres", "boussinesq-ends")  # the first that has a figure
 ROUGH = "rough"  # the base on which no contact slides
 HOMOGENEOUS, BY_DEPTH = f"homogeneous_{ROUGH}", f"by_depth_{ROUGH}"
+CENTRES, INSIDE = "by_depth_centres", "by_depth_inside"  # ends at the centres; load at their depth
 REGIONS = {"base": "on the base", "axis": "on the axis", "all": "of all profiles"}
 AT = 0.25  # of the depth: where the axis is looked at
 RIGHT = (2, 5, 10, 20)  # %
@@ -54,17 +55,19 @@ class Run:
     def __init__(self, folder, name, settings):
         record = json.loads((folder / f"{name}.json").read_text())
         self.name, self.summary, self.cpu = name, record["summary"], record["cpu_seconds"]
-        later = folder.parent / ENDS / f"{name}.json"  # the same layers, by a program that tells more
-        if later.exists():
-            self.summary = {**json.loads(later.read_text())["summary"], **self.summary}
+        file = folder / f"{name}.profiles.csv"
+        self.profiles = file.read_text() if file.exists() else ""
+        for more in (folder.parent / later for later in LATER):
+            if (more / f"{name}.json").exists():
+                self.summary = {**json.loads((more / f"{name}.json").read_text())["summary"], **self.summary}
+            if more.name == LATER[0] and (more / f"{name}.profiles.csv").exists():
+                self.profiles = (more / f"{name}.profiles.csv").read_text()  # has all that the first has
         given = dict(s.split("=", 1) for s in settings)
         self.friction = float(given.get("material.friction", 0.5))
         self.grains = int(given.get("response.grains", 1))
         self.shape = SHAPES[given.get("packing.shape", "disk")]
         self.shape = next((shape for shape in SPACE if shape in given.get("sweep.values", "")), self.shape)
         self.width = next((float(value) for key, value in given.items() if key.endswith("packing.width")), None)
-        file = folder / f"{name}.profiles.csv"
-        self.profiles = file.read_text() if file.exists() else ""
 
     def number(self, key):
         value = self.summary.get(key)
@@ -239,19 +242,23 @@ def causes(runs):
     return table(line(head), rows)
 
 
-def lowered(runs):
-    """The pressure of the base below the load over that of a rough layer of one stiffness: under a load on the
-    surface, and under one on the centres of the loaded grains, which is that on a layer so much less deep."""
-    head = ["depth / d", "μ", "centres of the loaded grains below the surface / d", "base below the load, over one "
-            "stiffness: load on the surface", "load on their centres"]
+def centres(runs):
+    """Layers that end at the centres of the loaded grains, of the runs that have them."""
+    head = ["depth / d", "μ", "centres below the surface / d", "all profiles, w = 0.1 h: layer to the surface",
+            "load inside", "layer to the centres", "w = 1.5 d: to the surface", "to the centres",
+            "base below the load, over the layer to the surface", "to the centres", "agrees (to the centres)"]
     rows = []
     for run in usual(runs):
-        below = run.number("response.load_depth") / run.number("layer.depth")
-        over = run.excess(HOMOGENEOUS, "w_depths", 1.0)
-        if math.isfinite(below) and math.isfinite(over[0]):
-            less = (1 - below) ** (2 if run.shape in SPACE else 1)  # the stress goes as F/h, in space F/h^2
-            rows.append(of(run) + [f"{below * run.depth:.2f}"]
-                        + [f"{share * (1 + over[0]):.2f} ± {share * over[1]:.2f}" for share in (1, less)])
+        if not run.misfit(CENTRES, "all").known:
+            continue
+        cells = of(run) + [f"{run.number('response.load_depth') / run.number('layer.depth') * run.depth:.2f}"]
+        cells += [run.misfit(model, "all").cell() for model in (BY_DEPTH, INSIDE, CENTRES)]
+        cells += [run.misfit(model, "all", "w_diameters").cell() for model in (BY_DEPTH, CENTRES)]
+        for model in (BY_DEPTH, CENTRES):
+            value, error = run.excess(model, "w_depths", 1.0)
+            cells.append(f"{1 + value:.2f} ± {error:.2f}")
+        chi2, chance = (run.number(f"compare.{CENTRES}.{name}") for name in ("chi2_per_dof", "chance"))
+        rows.append(cells + ["yes" if chi2 <= chance else "no"])
     return table(line(head), rows)
 
 
@@ -294,10 +301,12 @@ def ends(runs):
 def settlements(runs):
     """Settlements over the predicted ones, of the runs that tell."""
     head = ["depth / d", "μ", "surface, h/4 to h from the load: over one stiffness", "over stiffness by depth",
-            "below the load, h/4 to 3h/4: over one stiffness", "over stiffness by depth", "loaded grain: E_v u / F, in space E_v u h / F"]
+            "of the layer to the centres", "below the load, h/4 to 3h/4: over one stiffness", "over stiffness by depth",
+            "of the layer to the centres", "loaded grain: E_v u / F, in space E_v u h / F"]
     rows = []
     for run in usual(runs):
-        keys = [f"settlement.{model}.{place}" for place in ("surface", "axis") for model in (HOMOGENEOUS, BY_DEPTH)]
+        keys = [f"settlement.{model}.{place}" for place in ("surface", "axis")
+                for model in (HOMOGENEOUS, BY_DEPTH, CENTRES)]
         if math.isfinite(run.number(keys[0])):
             rows.append(of(run) + [with_error(run, key, 2) for key in [*keys, "response.settlement"]])
     return table(line(head), rows)
@@ -342,7 +351,7 @@ def anisotropy(runs):
 
 
 #: The tables of each page. Some are of figures that not every run has: of none, there is no table.
-TABLES = {PAGE: (misfits, causes, lowered, costs), DETAILS: (bases, linearity, ends, settlements), PACKINGS: (anisotropy,)}
+TABLES = {PAGE: (misfits, centres, causes, costs), DETAILS: (bases, linearity, ends, settlements), PACKINGS: (anisotropy,)}
 
 
 def draw_misfits(runs, picture):

@@ -1046,14 +1046,26 @@ def test_a_load_that_acts_deeper_is_found_on_the_axis(tmp_path):
     assert run.friction == 0.2
 
 
-def test_a_load_on_the_centres_of_loaded_grains_is_one_on_a_layer_less_deep(tmp_path):
-    head = "profile,depth_m,x_m,simulation_Pa,standard_error_Pa,homogeneous_rough_Pa\n"
-    runs = [layers_under_loads(tmp_path, name, settings, head + '"base, w = 0.01 m",0.1,0,3,0.1,2\n',
-                               **{"response.load_depth": 0.02})
-            for name, settings in (("deep-8", []), ("spheres-6", ['sweep.values=["spheres_6"]']))]
-    disks, spheres = limit.lowered(runs).splitlines()[2:]
-    assert disks.endswith("| 0.5 | 2.00 | 1.50 ± 0.05 | 1.20 ± 0.04 |")
-    assert spheres.endswith("| 0.5 | 2.00 | 1.50 ± 0.05 | 0.96 ± 0.03 |")
+def test_layers_that_end_at_the_centres_of_loaded_grains_are_those_of_later_runs(tmp_path):
+    head = "profile,depth_m,x_m,simulation_Pa,standard_error_Pa"
+    line = '"base, w = 0.01 m",0.1,0,3,0.1'
+    figures = {f"limit.{model}.all.{kernel}.{name}": value
+               for model, misfit in (("by_depth_rough", 0.2), ("by_depth_inside", 0.15), ("by_depth_centres", 0.1))
+               for kernel in ("w_depths", "w_diameters")
+               for name, value in (("squared", misfit**2), ("squared.standard_error", 0.002 * misfit), ("noise", 1e-5),
+                                   ("right_to", 1.1 * misfit))}
+    (tmp_path / "first").mkdir()
+    (tmp_path / limit.LATER[0]).mkdir()
+    chi2 = "compare.by_depth_centres.chi2_per_dof"
+    layers_under_loads(tmp_path / limit.LATER[0], "deep-8", [], f"{head},by_depth_rough_Pa,by_depth_centres_Pa\n{line},2,4\n", **{
+        **figures, "response.load_depth": 0.02, chi2: 2.0, "compare.by_depth_centres.chance": 3.0})
+    first = f"{head},by_depth_rough_Pa\n{line},2\n"
+    run, silent = (layers_under_loads(tmp_path / "first", name, [], first) for name in ("deep-8", "deep-9"))
+    assert limit.centres([run, silent]).splitlines()[2:] == [
+        "| 10.0 | 0.5 | 2.00 | 20.0 ± 0.1 | 15.0 ± 0.1 | 10.0 ± 0.1 | 20.0 ± 0.1 | 10.0 ± 0.1 | 1.50 ± 0.05 | "
+        "0.75 ± 0.03 | yes |"]
+    run.summary[chi2] = 4.0
+    assert limit.centres([run]).endswith("| no |\n")
 
 
 def test_larger_ensembles_take_the_place_of_smaller_ones(tmp_path):
@@ -1077,12 +1089,13 @@ def test_where_linearity_ends_and_what_settles_are_told_by_the_runs_that_know(tm
     assert limit.ends([known, silent]).splitlines()[2:] == [
         "| 8.0 | 0.2 | 0.50 ± 0.10 | 2.00 ± 0.30 | 4.0 ± 0.4 | 0.50 ± 0.05 |"]
     assert limit.settlements([known, silent]).splitlines()[2:] == [
-        "| 8.0 | 0.2 | 0.90 ± 0.05 | 0.90 ± 0.05 | 1.20 ± 0.05 | 1.20 ± 0.05 | 2.70 ± 0.10 |"]
+        "| 8.0 | 0.2 | 0.90 ± 0.05 | 0.90 ± 0.05 | – | 1.20 ± 0.05 | 1.20 ± 0.05 | – | 2.70 ± 0.10 |"]
     assert len(limit.ends([silent]).splitlines()) == 2
-    # A later run of the same layers adds what the first does not have.
-    (tmp_path / limit.ENDS).mkdir()
-    (tmp_path / limit.ENDS / "deep-8-mu-1.json").write_text(json.dumps(
-        {"summary": {"linearity.hundredth_changes": 5.0, "layer.depth_diameters": 99}}))
+    # Later runs of the same layers add what the first does not have.
+    for later, changes in zip(limit.LATER, (5.0, 6.0)):
+        (tmp_path / later).mkdir()
+        (tmp_path / later / "deep-8-mu-1.json").write_text(json.dumps(
+            {"summary": {"linearity.hundredth_changes": changes, "layer.depth_diameters": 99}}))
     (tmp_path / "first").mkdir()
     more = layers_under_loads(tmp_path / "first", "deep-8-mu-1", ["material.friction=1"])
     assert (more.number("linearity.hundredth_changes"), more.depth) == (5.0, 10)

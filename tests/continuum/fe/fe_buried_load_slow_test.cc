@@ -90,6 +90,11 @@ TEST(FeBuriedLoad, TendsToTheLoadOnTheSurfaceOfAGradedLayer) {
   std::remove(file.c_str());
 }
 
+TEST(FeBuriedLoad, RefusesOneThatNoMeshResolves) {
+  for (const char* below : {"1e-5", "1e-300", "0.95", "-0.1", "nan"})
+    EXPECT_THROW(make_model("fe_elastic_layer", {{"load_depth", below}}), BadParameter) << below;
+}
+
 TEST(FeBuriedLoad3d, MeetsMindlinFarAboveTheBase) {
   constexpr double kBelow = 0.02;
   const auto model = make_model("fe_elastic_layer", {{"dim", "3"},
