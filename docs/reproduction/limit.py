@@ -42,7 +42,7 @@ REGIONS = {"base": "on the base", "axis": "on the axis", "all": "of all profiles
 AT = 0.25  # of the depth: where the axis is looked at
 RIGHT = (2, 5, 10, 20)  # %
 SPACE = ("superellipsoids", "spheres")  # shapes of the grains that variants are named by
-COLOURS = {HOMOGENEOUS: "#1a5fa8", BY_DEPTH: "#c5502f"}
+COLOURS = {BY_DEPTH: "#c5502f", CENTRES: "#1a5fa8"}
 SHAPES = {"disk": "disks", "superellipsoid": "superellipsoids", "regular": "regular polygons", "irregular": "pentagons"}  # by packing.shape
 #: Drawn layers: gnuplot's points by shape and friction.
 POINTS = {("disks", 0.0): 6, ("disks", 0.2): 4, ("disks", 0.5): 7, ("disks", 1.0): 9, ("spheres", 0.5): 5,
@@ -363,7 +363,7 @@ def draw_misfits(runs, picture):
     most = 0.0
     for number, (region, kernel, title) in enumerate(panels):
         curves = []
-        for side, model in ((-1, HOMOGENEOUS), (1, BY_DEPTH)):
+        for side, model in ((-1, BY_DEPTH), (1, CENTRES)):
             for place, (kind, point) in enumerate(POINTS.items()):
                 shift = 1 + side * (0.01 + 0.015 * place)  # points of equal depth stand side by side
                 rows = []
@@ -377,7 +377,7 @@ def draw_misfits(runs, picture):
                     continue
                 name = f"p{number}{model}{place}".replace("_", "")
                 data += block(name, rows)
-                told = f"title '{kind[0]}, μ = {kind[1]:g}'" if number == 0 and model == HOMOGENEOUS else "notitle"
+                told = f"title '{kind[0]}, μ = {kind[1]:g}'" if number == 0 and model == BY_DEPTH else "notitle"
                 colour = f"lc rgb '{COLOURS[model]}'"
                 curves.append(f"${name} using 1:2:3:4 with yerrorbars pt {point} ps 0.7 {colour} {told}")
                 curves.append(f"${name} using 1:2 with lines {colour} notitle")
@@ -389,8 +389,8 @@ def draw_misfits(runs, picture):
               "set logscale x\nset xtics (6, 8, 15, 30, 60, 120)\nset grid\n"
               f"set xrange [5:{wide:g}]\nset yrange [0:{1.15 * most or 100:g}]\nset xlabel 'depth / mean diameter'\n"
               "set ylabel 'misfit (%)'\nset key top right\n"
-              f"set label 1 'one stiffness' at screen 0.3,0.96 center tc rgb '{COLOURS[HOMOGENEOUS]}'\n"
-              f"set label 2 'stiffness by depth' at screen 0.75,0.96 center tc rgb '{COLOURS[BY_DEPTH]}'\n")
+              f"set label 1 'layer to the surface' at screen 0.3,0.96 center tc rgb '{COLOURS[BY_DEPTH]}'\n"
+              f"set label 2 'layer to the centres of the loaded grains' at screen 0.75,0.96 center tc rgb '{COLOURS[CENTRES]}'\n")
     draw(picture, "960,840", data + layout + plots + "unset multiplot\n")
 
 

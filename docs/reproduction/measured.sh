@@ -109,15 +109,16 @@ for slip in 0.5 5 50; do
 done
 
 # Dropped piles of runs/liffman.txt and liffman-grains.txt, of those that are there.
-dropped() { # NAME MEMBER: thirty piles by implicit motion, judged as the explicit ones
+dropped() { # NAME MEMBER: piles by implicit motion, six a run, judged as the explicit ones
   local files=("$here/states/liffman/$1"-?.h5.xz) file name names=()
-  [ ${#files[@]} -eq 5 ] || return 0
+  [ -e "${files[0]}" ] || return 0
   for file in "${files[@]}"; do
     name=$(basename "$file" .xz)
     xz -dkc "$file" > "$name"
     names+=("\"$name\"")
   done
-  run "dropped-$2" liffman-dropped --set "grains.files=[$(IFS=,; echo "${names[*]}")]" "${@:3}"
+  run "dropped-$2" liffman-dropped --set "grains.files=[$(IFS=,; echo "${names[*]}")]" \
+    --set ensemble.realizations=$((6 * ${#files[@]})) "${@:3}"
   measure summary liffman-dropped "dropped-$2/summary.json" --member "$2" --keys dip. dem.repose_angle
 }
 dropped implicit implicit
