@@ -168,7 +168,7 @@ class Analysis {
   ModelChoice below_centres(ModelChoice model) const {
     model.below = centres();
     if (model.name.ends_with("_layer"))
-      model.settings["h"] = fmt::format("{:.9g}", depth_ - model.below);
+      model.settings["h"] = fmt::format("{:.15g}", depth_ - model.below);  // as in its table
     return model;
   }
   std::vector<SlabModuli> below_centres(std::vector<SlabModuli> slabs) const {
