@@ -37,12 +37,15 @@ LISTS = ("boussinesq", "boussinesq-space")
 LATER = ("boussinesq-centres", "boussinesq-ends")  # the first that has a figure
 ROUGH = "rough"  # the base on which no contact slides
 HOMOGENEOUS, BY_DEPTH = f"homogeneous_{ROUGH}", f"by_depth_{ROUGH}"
-CENTRES, INSIDE = "by_depth_centres", "by_depth_inside"  # ends at the centres; load at their depth
+#: Layers that end at the centres of the loaded grains; the whole layer, with the load as deep as these.
+ONE_CENTRES, CENTRES, INSIDE = "homogeneous_centres", "by_depth_centres", "by_depth_inside"
 REGIONS = {"base": "on the base", "axis": "on the axis", "all": "of all profiles"}
 AT = 0.25  # of the depth: where the axis is looked at
 RIGHT = (2, 5, 10, 20)  # %
 SPACE = ("superellipsoids", "spheres")  # shapes of the grains that variants are named by
-COLOURS = {BY_DEPTH: "#c5502f", CENTRES: "#1a5fa8"}
+#: Drawn models, with what the picture calls them.
+DRAWN = {HOMOGENEOUS: ("#8a8a8a", "one stiffness"), BY_DEPTH: ("#c5502f", "stiffness by depth"),
+         ONE_CENTRES: ("#1a5fa8", "one stiffness, layer to the centres of the loaded grains")}
 SHAPES = {"disk": "disks", "superellipsoid": "superellipsoids", "regular": "regular polygons", "irregular": "pentagons"}  # by packing.shape
 #: Drawn layers: gnuplot's points by shape and friction.
 POINTS = {("disks", 0.0): 6, ("disks", 0.2): 4, ("disks", 0.5): 7, ("disks", 1.0): 9, ("spheres", 0.5): 5,
@@ -244,21 +247,19 @@ def causes(runs):
 
 def centres(runs):
     """Layers that end at the centres of the loaded grains, of the runs that have them."""
-    head = ["depth / d", "μ", "centres below the surface / d", "all profiles, w = 0.1 h: layer to the surface",
-            "load inside", "layer to the centres", "w = 1.5 d: to the surface", "to the centres",
-            "base below the load, over the layer to the surface", "to the centres", "agrees (to the centres)"]
+    head = ["depth / d", "μ", "centres below the surface / d", "one stiffness: layer to the surface", "to the centres",
+            "by depth: to the surface", "load inside", "to the centres", "w = 1.5 d, one stiffness: to the surface",
+            "to the centres", "on the base, one stiffness: to the surface", "to the centres", "right to", "agrees"]
     rows = []
     for run in usual(runs):
-        if not run.misfit(CENTRES, "all").known:
+        if not run.misfit(ONE_CENTRES, "all").known:
             continue
         cells = of(run) + [f"{run.number('response.load_depth') / run.number('layer.depth') * run.depth:.2f}"]
-        cells += [run.misfit(model, "all").cell() for model in (BY_DEPTH, INSIDE, CENTRES)]
-        cells += [run.misfit(model, "all", "w_diameters").cell() for model in (BY_DEPTH, CENTRES)]
-        for model in (BY_DEPTH, CENTRES):
-            value, error = run.excess(model, "w_depths", 1.0)
-            cells.append(f"{1 + value:.2f} ± {error:.2f}")
-        chi2, chance = (run.number(f"compare.{CENTRES}.{name}") for name in ("chi2_per_dof", "chance"))
-        rows.append(cells + ["yes" if chi2 <= chance else "no"])
+        cells += [run.misfit(model, "all").cell() for model in (HOMOGENEOUS, ONE_CENTRES, BY_DEPTH, INSIDE, CENTRES)]
+        cells += [run.misfit(model, region, kernel).cell() for region, kernel in (("all", "w_diameters"), ("base", "w_depths"))
+                  for model in (HOMOGENEOUS, ONE_CENTRES)]
+        chi2, chance = (run.number(f"compare.{ONE_CENTRES}.{name}") for name in ("chi2_per_dof", "chance"))
+        rows.append(cells + [run.misfit(ONE_CENTRES, "all").right(), "yes" if chi2 <= chance else "no"])
     return table(line(head), rows)
 
 
@@ -363,9 +364,9 @@ def draw_misfits(runs, picture):
     most = 0.0
     for number, (region, kernel, title) in enumerate(panels):
         curves = []
-        for side, model in ((-1, BY_DEPTH), (1, CENTRES)):
+        for side, (model, (colour, _)) in enumerate(DRAWN.items(), -1):
             for place, (kind, point) in enumerate(POINTS.items()):
-                shift = 1 + side * (0.01 + 0.015 * place)  # points of equal depth stand side by side
+                shift = 1 + side * (0.01 + 0.01 * place)  # points of equal depth stand side by side
                 rows = []
                 for run in usual(runs):
                     if (run.shape, run.friction) == kind:
@@ -377,10 +378,10 @@ def draw_misfits(runs, picture):
                     continue
                 name = f"p{number}{model}{place}".replace("_", "")
                 data += block(name, rows)
-                told = f"title '{kind[0]}, μ = {kind[1]:g}'" if number == 0 and model == BY_DEPTH else "notitle"
-                colour = f"lc rgb '{COLOURS[model]}'"
-                curves.append(f"${name} using 1:2:3:4 with yerrorbars pt {point} ps 0.7 {colour} {told}")
-                curves.append(f"${name} using 1:2 with lines {colour} notitle")
+                told = f"title '{kind[0]}, μ = {kind[1]:g}'" if number == 0 and model == HOMOGENEOUS else "notitle"
+                paint = f"lc rgb '{colour}'"
+                curves.append(f"${name} using 1:2:3:4 with yerrorbars pt {point} ps 0.7 {paint} {told}")
+                curves.append(f"${name} using 1:2 with lines {paint} notitle")
         if curves:
             plots += f"set title 'Misfit {title}'\nplot " + ", ".join(curves) + "\nunset key\nunset label\n"
     if not plots:
@@ -389,8 +390,8 @@ def draw_misfits(runs, picture):
               "set logscale x\nset xtics (6, 8, 15, 30, 60, 120)\nset grid\n"
               f"set xrange [5:{wide:g}]\nset yrange [0:{1.15 * most or 100:g}]\nset xlabel 'depth / mean diameter'\n"
               "set ylabel 'misfit (%)'\nset key top right\n"
-              f"set label 1 'layer to the surface' at screen 0.3,0.96 center tc rgb '{COLOURS[BY_DEPTH]}'\n"
-              f"set label 2 'layer to the centres of the loaded grains' at screen 0.75,0.96 center tc rgb '{COLOURS[CENTRES]}'\n")
+              + "".join(f"set label {k} '{said}' at screen {at},0.96 center tc rgb '{colour}'\n"
+                        for k, (at, (colour, said)) in enumerate(zip((0.12, 0.35, 0.74), DRAWN.values()), 1)))
     draw(picture, "960,840", data + layout + plots + "unset multiplot\n")
 
 

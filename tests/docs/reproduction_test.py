@@ -1047,23 +1047,21 @@ def test_a_load_that_acts_deeper_is_found_on_the_axis(tmp_path):
 
 
 def test_layers_that_end_at_the_centres_of_loaded_grains_are_those_of_later_runs(tmp_path):
-    head = "profile,depth_m,x_m,simulation_Pa,standard_error_Pa"
-    line = '"base, w = 0.01 m",0.1,0,3,0.1'
-    figures = {f"limit.{model}.all.{kernel}.{name}": value
-               for model, misfit in (("by_depth_rough", 0.2), ("by_depth_inside", 0.15), ("by_depth_centres", 0.1))
-               for kernel in ("w_depths", "w_diameters")
+    misfits = {"homogeneous_rough": 0.3, "homogeneous_centres": 0.1, "by_depth_rough": 0.2, "by_depth_inside": 0.15,
+               "by_depth_centres": 0.12}
+    figures = {f"limit.{model}.{region}.{name}": value for model, misfit in misfits.items()
+               for region in ("all.w_depths", "all.w_diameters", "base.w_depths")
                for name, value in (("squared", misfit**2), ("squared.standard_error", 0.002 * misfit), ("noise", 1e-5),
                                    ("right_to", 1.1 * misfit))}
     (tmp_path / "first").mkdir()
     (tmp_path / limit.LATER[0]).mkdir()
-    chi2 = "compare.by_depth_centres.chi2_per_dof"
-    layers_under_loads(tmp_path / limit.LATER[0], "deep-8", [], f"{head},by_depth_rough_Pa,by_depth_centres_Pa\n{line},2,4\n", **{
-        **figures, "response.load_depth": 0.02, chi2: 2.0, "compare.by_depth_centres.chance": 3.0})
-    first = f"{head},by_depth_rough_Pa\n{line},2\n"
-    run, silent = (layers_under_loads(tmp_path / "first", name, [], first) for name in ("deep-8", "deep-9"))
+    chi2 = "compare.homogeneous_centres.chi2_per_dof"
+    layers_under_loads(tmp_path / limit.LATER[0], "deep-8", [], **{
+        **figures, "response.load_depth": 0.02, chi2: 2.0, "compare.homogeneous_centres.chance": 3.0})
+    run, silent = (layers_under_loads(tmp_path / "first", name, []) for name in ("deep-8", "deep-9"))
     assert limit.centres([run, silent]).splitlines()[2:] == [
-        "| 10.0 | 0.5 | 2.00 | 20.0 ± 0.1 | 15.0 ± 0.1 | 10.0 ± 0.1 | 20.0 ± 0.1 | 10.0 ± 0.1 | 1.50 ± 0.05 | "
-        "0.75 ± 0.03 | yes |"]
+        "| 10.0 | 0.5 | 2.00 | 30.0 ± 0.1 | 10.0 ± 0.1 | 20.0 ± 0.1 | 15.0 ± 0.1 | 12.0 ± 0.1 | 30.0 ± 0.1 | "
+        "10.0 ± 0.1 | 30.0 ± 0.1 | 10.0 ± 0.1 | 20 % | yes |"]
     run.summary[chi2] = 4.0
     assert limit.centres([run]).endswith("| no |\n")
 
