@@ -249,7 +249,8 @@ def centres(runs):
     """Layers that end at the centres of the loaded grains, of the runs that have them."""
     head = ["depth / d", "μ", "centres below the surface / d", "one stiffness: layer to the surface", "to the centres",
             "by depth: to the surface", "load inside", "to the centres", "w = 1.5 d, one stiffness: to the surface",
-            "to the centres", "on the base, one stiffness: to the surface", "to the centres", "right to", "agrees"]
+            "to the centres", "on the base, one stiffness: to the surface", "to the centres",
+            "to the centres, right to: one stiffness", "by depth", "agrees"]
     rows = []
     for run in usual(runs):
         if not run.misfit(ONE_CENTRES, "all").known:
@@ -258,8 +259,10 @@ def centres(runs):
         cells += [run.misfit(model, "all").cell() for model in (HOMOGENEOUS, ONE_CENTRES, BY_DEPTH, INSIDE, CENTRES)]
         cells += [run.misfit(model, region, kernel).cell() for region, kernel in (("all", "w_diameters"), ("base", "w_depths"))
                   for model in (HOMOGENEOUS, ONE_CENTRES)]
-        chi2, chance = (run.number(f"compare.{ONE_CENTRES}.{name}") for name in ("chi2_per_dof", "chance"))
-        rows.append(cells + [run.misfit(ONE_CENTRES, "all").right(), "yes" if chi2 <= chance else "no"])
+        agree = [said for model, said in ((ONE_CENTRES, "one stiffness"), (CENTRES, "by depth"))
+                 if run.number(f"compare.{model}.chi2_per_dof") <= run.number(f"compare.{model}.chance")]
+        rights = [run.misfit(model, "all").right() for model in (ONE_CENTRES, CENTRES)]
+        rows.append([*cells, *rights, {0: "none", 2: "both"}.get(len(agree), "".join(agree))])
     return table(line(head), rows)
 
 

@@ -1057,13 +1057,14 @@ def test_layers_that_end_at_the_centres_of_loaded_grains_are_those_of_later_runs
     (tmp_path / limit.LATER[0]).mkdir()
     chi2 = "compare.homogeneous_centres.chi2_per_dof"
     layers_under_loads(tmp_path / limit.LATER[0], "deep-8", [], **{
-        **figures, "response.load_depth": 0.02, chi2: 2.0, "compare.homogeneous_centres.chance": 3.0})
+        **figures, "response.load_depth": 0.02, chi2: 2.0, "compare.homogeneous_centres.chance": 3.0,
+        "compare.by_depth_centres.chi2_per_dof": 4.0, "compare.by_depth_centres.chance": 3.0})
     run, silent = (layers_under_loads(tmp_path / "first", name, []) for name in ("deep-8", "deep-9"))
     assert limit.centres([run, silent]).splitlines()[2:] == [
         "| 10.0 | 0.5 | 2.00 | 30.0 ± 0.1 | 10.0 ± 0.1 | 20.0 ± 0.1 | 15.0 ± 0.1 | 12.0 ± 0.1 | 30.0 ± 0.1 | "
-        "10.0 ± 0.1 | 30.0 ± 0.1 | 10.0 ± 0.1 | 20 % | yes |"]
+        "10.0 ± 0.1 | 30.0 ± 0.1 | 10.0 ± 0.1 | 20 % | 20 % | one stiffness |"]
     run.summary[chi2] = 4.0
-    assert limit.centres([run]).endswith("| no |\n")
+    assert limit.centres([run]).endswith("| none |\n")
 
 
 def test_larger_ensembles_take_the_place_of_smaller_ones(tmp_path):
