@@ -6,7 +6,7 @@ point-load-packings.md, or puts them into the pages, and draws the picture.
 
 Reads the runs of the LISTS in states/boussinesq/ and states/boussinesq-space/ (runs/next.py computes them): the
 figures in NAME.json, and on the axis NAME.profiles.csv where it is kept. What they lack is taken from LATER runs of the
-same layers, states/LATER/NAME.json. A misfit is the root of the squared distance of the grains' mean from a prediction
+same layers. A misfit is the root of the squared distance of the grains' mean from a prediction
 less the variance of that mean, over the root of the squared prediction; where it is within its noise, "<" and the upper
 end of 95 % stand for it. "–" has not run.
 --write replaces the tables of the pages that have the same heads. Needs gnuplot for the picture.
@@ -34,7 +34,7 @@ DETAILS = PAGE.with_name("boussinesq-limit-tables.md")
 PACKINGS = PAGE.with_name("point-load-packings.md")
 ISOTROPIC = HERE / "results" / "point-load-pentagons.profiles.md"  # has the isotropic layer, smooth base
 LISTS = ("boussinesq", "boussinesq-space")
-LATER = ("boussinesq-centres", "boussinesq-ends")  # the first that has a figure
+LATER = "boussinesq-centres"
 ROUGH = "rough"  # the base on which no contact slides
 HOMOGENEOUS, BY_DEPTH = f"homogeneous_{ROUGH}", f"by_depth_{ROUGH}"
 #: Layers that end at the centres of the loaded grains; the whole layer, with the load as deep as these.
@@ -60,11 +60,9 @@ class Run:
         self.name, self.summary, self.cpu = name, record["summary"], record["cpu_seconds"]
         file = folder / f"{name}.profiles.csv"
         self.profiles = file.read_text() if file.exists() else ""
-        for more in (folder.parent / later for later in LATER):
-            if (more / f"{name}.json").exists():
-                self.summary = {**json.loads((more / f"{name}.json").read_text())["summary"], **self.summary}
-            if more.name == LATER[0] and (more / f"{name}.profiles.csv").exists():
-                self.profiles = (more / f"{name}.profiles.csv").read_text()  # has all that the first has
+        later = folder.parent / LATER / f"{name}.json"  # the same layers, by a program that tells more
+        if later.exists():
+            self.summary = {**json.loads(later.read_text())["summary"], **self.summary}
         given = dict(s.split("=", 1) for s in settings)
         self.friction = float(given.get("material.friction", 0.5))
         self.grains = int(given.get("response.grains", 1))
