@@ -58,11 +58,11 @@ class Run:
     def __init__(self, folder, name, settings):
         record = json.loads((folder / f"{name}.json").read_text())
         self.name, self.summary, self.cpu = name, record["summary"], record["cpu_seconds"]
-        file = folder / f"{name}.profiles.csv"
-        self.profiles = file.read_text() if file.exists() else ""
-        later = folder.parent / LATER / f"{name}.json"  # the same layers, by a program that tells more
-        if later.exists():
-            self.summary = {**json.loads(later.read_text())["summary"], **self.summary}
+        later = folder.parent / LATER  # the same layers, by a program that tells more
+        if (later / f"{name}.json").exists():
+            self.summary = {**json.loads((later / f"{name}.json").read_text())["summary"], **self.summary}
+        files = [one / f"{name}.profiles.csv" for one in (folder, later)]
+        self.profiles = next((file.read_text() for file in files if file.exists()), "")
         given = dict(s.split("=", 1) for s in settings)
         self.friction = float(given.get("material.friction", 0.5))
         self.grains = int(given.get("response.grains", 1))
