@@ -23,8 +23,9 @@ struct SettlementPlaces {
   double aside = 0;
 };
 
-/// Settlements that a model of a layer predicts, from its stresses and the moduli of the grains: the vertical strain integrated upwards from the base, which does not settle. nan nearer
-/// to the load than a tenth of the depth, where it is singular. Throws as evaluate_model().
+/// Settlements that a model of a layer predicts, from its stresses and the moduli of the grains:
+/// the vertical strain integrated upwards from the base, which does not settle. nan nearer to the
+/// load than a tenth of the depth, where it is singular. Throws as evaluate_model().
 Settlements predicted_settlements(const ModelChoice& layer, const RunFacts& facts,
                                   const continuum::ModuliByDepth& moduli,
                                   const SettlementPlaces& places);

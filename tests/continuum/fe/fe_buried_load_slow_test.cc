@@ -26,7 +26,7 @@ double mindlin(double nu, double c, double r, double z) {
   return sum / (8 * M_PI * (1 - nu));
 }
 
-// The same of a line of forces.
+// sigma_zz of a line of such forces, x from it.
 double mindlin_line(double nu, double c, double x, double z) {
   const auto f = [&](double t) {  // y = z t/(1 - t^2)
     const double y = z * t / (1 - t * t);
