@@ -6,9 +6,9 @@ point-load-packings.md, or puts them into the pages, and draws the picture.
 
 Reads the runs of the LISTS in states/boussinesq/ and states/boussinesq-space/ (runs/next.py computes them): the
 figures in NAME.json, and on the axis NAME.profiles.csv where it is kept. What they lack is taken from LATER runs of the
-same layers. A misfit is the root of the squared distance of the grains' mean from a prediction
-less the variance of that mean, over the root of the squared prediction; where it is within its noise, "<" and the upper
-end of 95 % stand for it. "–" has not run.
+same layers. A misfit is the root of the squared distance of the grains' mean from a prediction less the variance of
+that mean, over the root of the squared prediction; where it is within its noise, "<" and the upper end of 95 % stand
+for it. "–" has not run.
 --write replaces the tables of the pages that have the same heads. Needs gnuplot for the picture.
 """
 import argparse
