@@ -49,7 +49,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE / "runs"))
 
 from next import fail, read_list  # noqa: E402
-from record import write_file  # noqa: E402
+from record import read_text, write_file  # noqa: E402
 from rows import CAUSES, all_rows  # noqa: E402
 
 PARTS = {"first": (0.0, 0.04), "middle": (0.08, 0.12), "last": (0.14, 0.20)}
@@ -69,7 +69,7 @@ TOLERANCE = 1e-3  # of the strain at which a state is recorded
 
 def read_columns(file):
     """The columns of a CSV of a run as arrays, nan where a value is missing."""
-    lines = [line for line in file.read_text().splitlines() if not line.startswith("#")]
+    lines = [line for line in read_text(file).splitlines() if not line.startswith("#")]
     rows = list(csv.DictReader(lines))
     return {name.replace("_Pa", ""): numpy.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
 
@@ -184,7 +184,7 @@ def read_runs(listed):
     for run, *_ in read_list(listed)[1]:
         file, packed = folder / f"{run}.json", folder / f"{run}.h5.xz"
         if file.exists():
-            tables = (folder / f"{run}.{table}.csv" for table in ("states_of_realizations", "rve"))
+            tables = (folder / f"{run}.{table}.csv.xz" for table in ("states_of_realizations", "rve"))
             name, _, number = run.rpartition("-")
             out[name, number] = figures_of(name, json.loads(file.read_text()),
                                            *(read_columns(table) if table.exists() else None for table in tables),

@@ -5,7 +5,7 @@ point-load-packings.md, or puts them into the pages, and draws the picture.
     docs/reproduction/limit.py [--write] [--picture PICTURE] [--states FOLDER]
 
 Reads the runs of the LISTS in states/boussinesq/ and states/boussinesq-space/ (runs/next.py computes them): the
-figures in NAME.json, and on the axis NAME.profiles.csv where it is kept. What they lack is taken from LATER runs of the
+figures in NAME.json, and on the axis NAME.profiles.csv.xz where it is kept. What they lack is taken from LATER runs of the
 same layers. A misfit is the root of the squared distance of the grains' mean from a prediction less the variance of
 that mean, over the root of the squared prediction; where it is within its noise, "<" and the upper end of 95 % stand
 for it. "–" has not run.
@@ -26,7 +26,7 @@ sys.path[:0] = [str(HERE), str(HERE / "runs"), str(HERE.parent / "images")]
 
 from gnuplot import block, draw  # noqa: E402
 from next import fail, read_list  # noqa: E402
-from record import write_file  # noqa: E402
+from record import read_text, write_file  # noqa: E402
 from tables import line, put, table  # noqa: E402
 
 PAGE = HERE.parent / "cases" / "boussinesq-limit.md"
@@ -61,8 +61,8 @@ class Run:
         later = folder.parent / LATER  # the same layers, by a program that tells more
         if (later / f"{name}.json").exists():
             self.summary = {**json.loads((later / f"{name}.json").read_text())["summary"], **self.summary}
-        files = [one / f"{name}.profiles.csv" for one in (folder, later)]
-        self.profiles = next((file.read_text() for file in files if file.exists()), "")
+        files = [one / f"{name}.profiles.csv.xz" for one in (folder, later)]
+        self.profiles = next((read_text(file) for file in files if file.exists()), "")
         given = dict(s.split("=", 1) for s in settings)
         self.friction = float(given.get("material.friction", 0.5))
         self.grains = int(given.get("response.grains", 1))

@@ -95,7 +95,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
 from heaps import AXIS as AXIS_WINDOW, RVE, Heap, angle_deg, remembered  # noqa: E402
-from record import write_file  # noqa: E402
+from record import read_text, write_file  # noqa: E402
 from roul_fit import FIGURES as FITTED, figures as fitted_as_roul  # noqa: E402
 
 LEVELS = (0, 0.1, 0.25, 0.5)
@@ -272,7 +272,7 @@ def width(places, values):
 
 def read_table(file):
     """The rows of a table: {column without its unit: number or text}."""
-    lines = [line for line in file.read_text().splitlines() if not line.startswith("#")]
+    lines = [line for line in read_text(file).splitlines() if not line.startswith("#")]
     return [{re.sub(r" \(.*|_(m|N/m)$", "", name): value if name == "profile" else float(value or "nan")
              for name, value in row.items()} for row in csv.DictReader(lines)]
 
@@ -300,7 +300,7 @@ def strain_of(files):
 
 def base_of(file):
     """The rows of a profiles.csv on the base, and the number of its realizations."""
-    record = json.loads(file.with_name(file.name.replace(".profiles.csv", ".json")).read_text())
+    record = json.loads(file.with_name(re.sub(r"\.profiles\.csv(\.xz)?$", ".json", file.name)).read_text())
     return ([row for row in read_table(file) if row["profile"] == "base"],
             record["summary"]["ensemble.realizations"])
 

@@ -139,7 +139,7 @@ unpack() { [ -e "$1.h5" ] || { xz -dkc "$layers/$1.h5.xz" > "$1.h5.part" && mv "
 layer() { # STUDY NAME MEMBER
   [ -e "$layers/$2.json" ] || return 0
   measure summary "$1" "$layers/$2.json" --member "$3" --keys response. load.
-  [ ! -e "$layers/$2.profiles.csv" ] || measure centre "$1" "$layers/$2.profiles.csv" --member "$3"
+  [ ! -e "$layers/$2.profiles.csv.xz" ] || measure centre "$1" "$layers/$2.profiles.csv.xz" --member "$3"
 }
 strain() { # NAME MEMBER REALIZATION ...
   [ -e "$layers/$1.json" ] || return 0
@@ -164,7 +164,7 @@ layer point-load-pentagons pentagons layers_24
 layer point-load-bidisperse bidisperse_100 force_100
 for floor in smooth rough; do
   [ ! -e "$layers/$floor-1.json" ] ||
-    measure pieces point-load-polydisperse "$layers/$floor"-*.profiles.csv --member pieces_$floor
+    measure pieces point-load-polydisperse "$layers/$floor"-*.profiles.csv.xz --member pieces_$floor
 done
 unpack mono_300 && measure angles point-load-mono mono_300.h5 --member packing
 unpack friction_0.3 && measure angles point-load-friction friction_0.3.h5 --member packing

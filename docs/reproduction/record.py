@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import base64
+import lzma
 import os
 import pathlib
 import re
@@ -17,6 +18,12 @@ def write_file(file: pathlib.Path, content: bytes) -> None:
     partial = file.with_name(file.name + ".part")
     partial.write_bytes(content)
     os.replace(partial, file)
+
+
+def read_text(file: pathlib.Path) -> str:
+    """The text of a file, unpacked where its name ends with .xz."""
+    content = file.read_bytes()
+    return (lzma.decompress(content) if file.suffix == ".xz" else content).decode()
 
 
 def record_run(run: pathlib.Path, results: pathlib.Path) -> list[pathlib.Path]:

@@ -80,7 +80,7 @@ def test_a_finished_run_leaves_its_figures_without_a_folder_of_the_machine(repos
     done = repository.next()
     assert (done.returncode, done.stdout) == (0, "a: committed\n"), done.stderr
     assert repository.git("diff", "--name-only", before.strip(), "HEAD").split() == [
-        f"{KEPT}/a.json", f"{KEPT}/a.model.csv", f"{KEPT}/a.profiles.csv"]
+        f"{KEPT}/a.json", f"{KEPT}/a.model.csv.xz", f"{KEPT}/a.profiles.csv.xz"]
     assert repository.git("status", "--porcelain") == ""
     assert repository.git("log", "-1", "--format=%s") == "Runs: a, seed 7, of first\n"
     text = (repository.folder / KEPT / "a.json").read_text()

@@ -15,9 +15,9 @@ priority and one thread, or --threads of them, to the same bits. When the time i
 next call goes on to the same bits. Several calls at once take different runs. A finished run leaves
 two files in docs/reproduction/states/LIST/, which are committed: NAME.h5.xz, its states compacted
 (states/compact.py), and NAME.json with seed, commit, settings, processor time, the SHA-256 of the
-states and the figures of summary.json. A run with output.snapshots=false leaves its tables instead of
-states, NAME.TABLE.csv: those beside states.csv (of a sample) or profiles.csv. A run whose NAME.json is
-there is not missing. With --pack a run that has not ended leaves NAME.unfinished.tar.xz there,
+states (of a table before it is packed) and the figures of summary.json. A run with
+output.snapshots=false leaves its tables instead of states, NAME.TABLE.csv.xz: those beside states.csv
+(of a sample) or profiles.csv. A run whose NAME.json is there is not missing. With --pack a run that has not ended leaves NAME.unfinished.tar.xz there,
 committed: another machine goes on from it. A run whose grains.files name
 docs/reproduction/states/LIST/NAME.h5 waits until that run's states are there, and unpacks them.
 
@@ -211,6 +211,10 @@ def compute(source, run, folder, deadline, threads):
     return True
 
 
+def compressed(file):
+    return lzma.compress(file.read_bytes(), preset=9 | lzma.PRESET_EXTREME)
+
+
 def keep(run, tag, commit, folder, states):
     """Puts what a finished run leaves beside the other states and commits it."""
     name, seed, case, settings = run
@@ -226,12 +230,12 @@ def keep(run, tag, commit, folder, states):
     contents = {}
     if without_states:
         for table in sorted(found[0].parent.glob("*.csv")):
-            contents[states / f"{name}.{table.name}"] = table.read_bytes()
-        kept = contents[states / f"{name}.{wanted}"]
+            contents[states / f"{name}.{table.name}.xz"] = compressed(table)
+        kept = found[0].read_bytes()
     else:
         subprocess.run([sys.executable, str(HERE.parent / "states" / "compact.py"), str(found[0]),
                         str(compact)], check=True)
-        kept = lzma.compress(compact.read_bytes(), preset=9 | lzma.PRESET_EXTREME)
+        kept = compressed(compact)
         contents[states / f"{name}.h5.xz"] = kept
     # Verdicts may name files of the run: without the folder of this machine.
     figures = json.loads(found[0].with_name("summary.json").read_text().replace(f"{folder / 'results'}/", ""))
