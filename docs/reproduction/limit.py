@@ -151,7 +151,7 @@ class Misfit:
         """The smallest of RIGHT that the bound is below, or that there is none."""
         if not self.known:
             return "–"
-        return next((f"{x} %" for x in RIGHT if self.bound < x), "not resolved")
+        return next((f"{x} %" for x in RIGHT if self.bound < x), "none")
 
 
 def shown(value):
@@ -192,18 +192,38 @@ def of(run):
 
 
 def misfits(runs):
-    head = ["depth / d", "μ", "layers"]
-    for region in REGIONS.values():
-        head += [f"{region}: one stiffness", "by depth"]
+    """Of all profiles, for layers to the surface and to the centres of the loaded grains."""
+    head = ["depth / d", "μ", "one stiffness: layer to the surface", "to the centres",
+            "stiffness by depth: to the surface", "to the centres", "to the centres, right to: one stiffness", "by depth",
+            "agrees"]
+    rows = []
+    for run in usual(runs):
+        cells = [run.misfit(model, "all").cell() for model in (HOMOGENEOUS, ONE_CENTRES, BY_DEPTH, CENTRES)]
+        cells += [run.misfit(model, "all").right() for model in (ONE_CENTRES, CENTRES)]
+        agree = [said for model, said in ((ONE_CENTRES, "one stiffness"), (CENTRES, "by depth"))
+                 if run.number(f"compare.{model}.chi2_per_dof") <= run.number(f"compare.{model}.chance")]
+        known = run.misfit(ONE_CENTRES, "all").known
+        rows.append([*of(run), *cells, {0: "none", 2: "both"}.get(len(agree), "".join(agree)) if known else "–"])
+    return table(line(head), rows)
+
+
+def parts(runs):
+    """Misfits in parts of the layer, of a load inside it, and with the wide kernel."""
+    head = ["depth / d", "μ", "centres below the surface / d", "base, to the surface: one stiffness", "by depth",
+            "base, to the centres: one stiffness", "axis, to the surface: one stiffness", "by depth",
+            "by depth, load inside", "w = 1.5 d, one stiffness: to the surface", "to the centres"]
+    columns = ((HOMOGENEOUS, "base"), (BY_DEPTH, "base"), (ONE_CENTRES, "base"), (HOMOGENEOUS, "axis"), (BY_DEPTH, "axis"),
+               (INSIDE, "all"), (HOMOGENEOUS, "all", "w_diameters"), (ONE_CENTRES, "all", "w_diameters"))
     rows = []
     for run in usual(runs) + [run for run in runs if run.width is not None]:
-        pairs = [run.misfit(model, region).cell() for region in REGIONS for model in (HOMOGENEOUS, BY_DEPTH)]
-        rows.append(of(run) + [f"{run.layers}"] + pairs + [run.misfit(BY_DEPTH, "all").right()])
-    return table(line(head + ["right to"]), rows)
+        below = run.number("response.load_depth") / run.number("layer.depth") * run.depth
+        rows.append([*of(run), f"{below:.2f}" if math.isfinite(below) else "–",
+                     *(run.misfit(*one).cell() for one in columns)])
+    return table(line(head), rows)
 
 
 def bases(runs):
-    head = ["depth / d", "μ", "half space", "layer, smooth base", "layer, rough base", "the judge's words", "position"]
+    head = ["depth / d", "μ", "half space", "layer, smooth base", "layer, rough base", "nearer by the judge", "position"]
     rows = []
     for run in usual(runs):
         models = ("by_depth_half_space", "by_depth_smooth", BY_DEPTH)
@@ -214,9 +234,11 @@ def bases(runs):
 
 
 def words(run):
-    """What the judge says of layer and half space."""
-    said = re.search(r" %\)?\. (.+?)(?: \(\d+ layers[^)]*\))?\. ", run.summary.get("verdict.sentence", ""))
-    return said[1] if said else "–"
+    """What the judge says of layer and half space, in short."""
+    said = run.summary.get("verdict.sentence", "")
+    if "cannot be distinguished" in said:
+        return "not distinguished"
+    return "layer" if "finite layer is nearer" in said else "–"
 
 
 def shifted(value):
@@ -240,27 +262,6 @@ def causes(runs):
             cells.append(percent(*more.excess(HOMOGENEOUS, "w_depths")) if more else "–")
         cells += [shifted(run.shift(BY_DEPTH, "w_depths", at)) for at in (0.25, 0.5, 0.75)]
         rows.append(cells)
-    return table(line(head), rows)
-
-
-def centres(runs):
-    """Layers that end at the centres of the loaded grains, of the runs that have them."""
-    head = ["depth / d", "μ", "centres below the surface / d", "one stiffness: layer to the surface", "to the centres",
-            "by depth: to the surface", "load inside", "to the centres", "w = 1.5 d, one stiffness: to the surface",
-            "to the centres", "on the base, one stiffness: to the surface", "to the centres",
-            "to the centres, right to: one stiffness", "by depth", "agrees"]
-    rows = []
-    for run in usual(runs):
-        if not run.misfit(ONE_CENTRES, "all").known:
-            continue
-        cells = of(run) + [f"{run.number('response.load_depth') / run.number('layer.depth') * run.depth:.2f}"]
-        cells += [run.misfit(model, "all").cell() for model in (HOMOGENEOUS, ONE_CENTRES, BY_DEPTH, INSIDE, CENTRES)]
-        cells += [run.misfit(model, region, kernel).cell() for region, kernel in (("all", "w_diameters"), ("base", "w_depths"))
-                  for model in (HOMOGENEOUS, ONE_CENTRES)]
-        agree = [said for model, said in ((ONE_CENTRES, "one stiffness"), (CENTRES, "by depth"))
-                 if run.number(f"compare.{model}.chi2_per_dof") <= run.number(f"compare.{model}.chance")]
-        rights = [run.misfit(model, "all").right() for model in (ONE_CENTRES, CENTRES)]
-        rows.append([*cells, *rights, {0: "none", 2: "both"}.get(len(agree), "".join(agree))])
     return table(line(head), rows)
 
 
@@ -353,7 +354,7 @@ def anisotropy(runs):
 
 
 #: The tables of each page. Some are of figures that not every run has: of none, there is no table.
-TABLES = {PAGE: (misfits, centres, causes, costs), DETAILS: (bases, linearity, ends, settlements), PACKINGS: (anisotropy,)}
+TABLES = {PAGE: (misfits, causes, settlements, costs), DETAILS: (parts, bases, linearity, ends), PACKINGS: (anisotropy,)}
 
 
 def draw_misfits(runs, picture):

@@ -100,8 +100,10 @@ done
 run apart liffman-soft-piles --set 'sweep.values=["slope_60"]' --set lattice.gap=5e-4 \
   --set rest.unbalanced_force_ratio=1e-6
 measure summary liffman-soft-piles apart/slope_60/summary.json --member apart_60 --keys liffman.
-run touching liffman-lattice --set lattice.gap=0 --set 'sweep.values=[60]'
-measure summary liffman-lattice touching/slope_deg_60/summary.json --member touch_60 --keys liffman.
+run touching liffman-lattice --set lattice.gap=0 --set 'sweep.values=[30,45,50,55,60]'
+for angle in 30 45 50 55 60; do
+  measure summary liffman-lattice touching/slope_deg_$angle/summary.json --member touch_$angle --keys liffman.
+done
 # Those of runs/liffman-settling.txt that are there.
 for slip in 0.5 5 50; do
   record=$here/states/liffman-settling/slip-$slip.json
@@ -161,6 +163,7 @@ for mu in 0.3 0.6 0.9; do
 done
 for one in 0{3,8}_{3,30,100,300}; do layer point-load-load load_$one-varied varied_$one; done
 layer point-load-pentagons pentagons layers_24
+layer point-load-bidisperse bidisperse layers_16
 layer point-load-bidisperse bidisperse_100 force_100
 for floor in smooth rough; do
   [ ! -e "$layers/$floor-1.json" ] ||
@@ -184,6 +187,9 @@ layer point-load-mono mono-disks-piston piston_varied_300
 for one in disks-loose disks-loose-piston disks-slow corners-24 corners-24-piston corners-48; do
   layer point-load-mono mono-$one $one
   layer point-load-friction friction_0.6-$one $one
+done
+for mu in 0.3 0.9; do
+  for one in corners-24 corners-24-piston; do layer point-load-friction friction_$mu-$one ${one}_$mu; done
 done
 
 # Tails of P(n): layers of runs/tails.txt, forces by the overlap's area and linear springs.

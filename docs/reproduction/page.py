@@ -146,13 +146,15 @@ def dips(results: Results) -> str:
         "The difference is the mean base pressure beside the apex minus that under it, over ρ g h of each pile. "
         "If there were no dip or peak, a difference this large, of either sign, would occur by chance with "
         "probability p (Student's t over realizations). The next column corrects p for all "
-        f"{len(found)} pours of this table (Holm); the last one decides. Ensembles of which only the states are "
-        "kept are not in the table ([which they are](reproduction/results/README.md)).\n\n"
+        f"{len(found)} pours of this table (Holm); the last one decides. Those of `pours` are measured by "
+        "`docs/reproduction/pours.py` in stored states.\n\n"
         "| study | realizations | shoulder − centre (ρgh) | p | p (Holm) | at 5 % |\n"
         "|---|---|---|---|---|---|\n")
     for dip in found:
-        realizations = number(results, dip.study, "ensemble.realizations", "g")
-        out += (f"| `{dip.study}` | {realizations} | {dip.difference.value:.3f} ± {dip.difference.error:.3f} "
+        name = f"`{dip.study}`" + (f", `{dip.member}`" if dip.member else "")
+        count = dip.difference.freedom + 1
+        out += (f"| {name} | {count:g} |" if math.isfinite(count) else f"| {name} |  |")
+        out += (f" {dip.difference.value:.3f} ± {dip.difference.error:.3f} "
                 f"| {dip.p:.2g} | {dip.p_holm:.2g} | {dip.word} |\n")
     return out
 
@@ -320,7 +322,7 @@ def missing(results: Results) -> str:
     """Which figures of the sources have no result, and why some cannot."""
     lacking, why = unanswered(results), [(source, figure, sentence) for source, listed in read_toml("sources").items()
                                          for figure, sentence in listed["sentences"].items()]
-    out = f"\nFigures without a result: {', '.join(lacking) or 'none'}.\n"
+    out = f"\nFigures without a result: {', '.join(lacking)}.\n" if lacking else "\nEvery figure has a row with a result.\n"
     return out + "".join(f"{source} {figure}: {sentence}\n" for source, figure, sentence in why)
 
 

@@ -2,6 +2,7 @@
 """What stored piles say of the dip: all pours, and piles of 800 grains of which one thing was changed.
 
     docs/reproduction/pours.py            table of all pours
+    docs/reproduction/pours.py --write    puts those that only states are kept of into results/pours.json
     docs/reproduction/pours.py causes     table of the causes of runs/pile-causes.txt, of the piles that are there
 
 Both read the states (states/*.h5.xz), or else results/*.json, and measure as heaps.py does: sigma_xx / sigma_yy on the
@@ -19,6 +20,7 @@ docs/images/pile_pours draws both. Needs h5py, numpy and scipy.
 """
 import argparse
 import io
+import json
 import lzma
 import math
 import pathlib
@@ -34,28 +36,33 @@ sys.path.insert(0, str(HERE / "runs"))
 
 from heaps import AXIS, Heap  # noqa: E402
 from next import read_list  # noqa: E402
-from summaries import Measured, Results, holm  # noqa: E402
+from record import write_file  # noqa: E402
+from summaries import Measured, Results, holm, two_sided  # noqa: E402
 
 STATES = HERE / "states"
 CAUSES = HERE / "runs/pile-causes.txt"
-#: what, the files of its states. A file holds one pile or more.
+#: what, the files of its states, the study and member that results/ has it as. A file holds one pile or more.
 POURS = (
-    ("point source, 300 grains", ("pile-rest-300-awake",)),  # those asleep slept by older rules
-    ("point source, 800 grains", ("pile-rest-800-awake", "pile-rest-800-sleeping", "memory/memory-800-*")),
-    ("point source, 2,000 grains", ("pile-point-source-2000", "piles/point-2000-*")),
-    ("point source, 6,500 grains", ("piles/point-6500-*",)),
-    ("elliptic grains from a point, 800", ("memory/elliptic-800-*",)),
-    ("disks from a point, 2,000", ("disks/disks-2000-*",)),
-    ("disks from a point in LAMMPS, 2,000", ("lammps/disks-2000-*",)),
-    ("layers, 6,300 grains", ("pile-line-source",)),
-    ("shifted layers, 6,500 grains", ("pile-asymmetric-line",)),
+    ("point source, 300 grains", ("pile-rest-300-awake",), ("pours", "point_300")),  # those asleep slept by older rules
+    ("point source, 800 grains", ("pile-rest-800-awake", "pile-rest-800-sleeping", "memory/memory-800-*"),
+     ("pours", "point_800")),
+    ("point source, 2,000 grains", ("pile-point-source-2000", "piles/point-2000-*"), ("pours", "point_2000")),
+    ("point source, 6,500 grains", ("piles/point-6500-*",), None),
+    ("elliptic grains from a point, 800", ("memory/elliptic-800-*",), None),
+    ("disks from a point, 2,000", ("disks/disks-2000-*",), None),
+    ("disks from a point in LAMMPS, 2,000", ("lammps/disks-2000-*",), None),
+    ("layers, 6,300 grains", ("pile-line-source",), ("pile-line-source", "")),
+    ("shifted layers, 6,500 grains", ("pile-asymmetric-line",), ("pile-asymmetric-line", "")),
 )
 #: Studies and members of which results/ has the difference alone: states are lost or not kept. Other sleep: older rules.
 RECORDED = (("equal disks from a point, 968", "liffman-dropped-grains", "equal_968"),
             ("equal disks with friction, 968", "liffman-dropped-grains", "coulomb_968"),
             ("disks of unlike radii, 968", "liffman-dropped-grains", "unlike_968"),
             ("disks of unlike radii with friction, 968", "liffman-dropped-grains", "coulomb_unlike_968"),
+            ("equal disks with friction, free to roll, 968", "liffman-dropped-grains", "coulomb_free_968"),
             ("pentagons with friction, 968", "liffman-dropped-grains", "pentagons_968"),
+            ("equal disks, Liffman's dynamics, 968", "liffman-dropped", "implicit"),
+            ("equal disks with friction, Liffman's dynamics, 968", "liffman-dropped", "implicit_coulomb"),
             ("point source, 6,500 grains, other sleep", "pile-point-source", ""),
             ("elliptic grains from a point, 6,500, other sleep", "pile-elliptic", ""),
             ("moving point source, 6,500 grains, other sleep", "pile-asymmetric-point", ""))
@@ -139,7 +146,7 @@ def table(lines):
 
 def pours(folder=STATES):
     """{what: FIGURES of its heaps} of the pours of which LEAST heaps are there, and of all from a point."""
-    found = {what: measured(patterns, folder) for what, patterns in POURS}
+    found = {what: measured(patterns, folder) for what, patterns, _ in POURS}
     return {what: one for what, one in found.items() if len(one["dip"]) >= LEAST}
 
 
@@ -149,16 +156,34 @@ def recorded_pours(results):
     return {what: one for what, one in found.items() if one is not None}
 
 
-def pours_table(found, recorded):
+def corrected(results):
+    """{what: p over all pours} as reproduction.md has it, of the pours that results/ has."""
+    names = {what: name for what, _, name in POURS if name} | {what: name for what, *name in RECORDED}
+    judged = {(dip.study, dip.member): dip.p_holm for dip in results.dips()}
+    return {what: judged[tuple(name)] for what, name in names.items() if tuple(name) in judged}
+
+
+def write_measured(found, results=HERE / "results"):
+    """Writes results/pours.json, the difference of every pour that only POURS has."""
+    out = {}
+    for what, _, name in POURS:
+        if name and name[0] == "pours" and what in found:
+            one = mean_of(found[what]["dip"])
+            out |= {f"dip.difference.{name[1]}": one.value, f"dip.standard_error.{name[1]}": one.error,
+                    f"ensemble.realizations.{name[1]}": one.freedom + 1}
+    write_file(results / "pours.json", (json.dumps(out, indent=1) + "\n").encode())
+
+
+def pours_table(found, recorded, judged):
     lines = [["pour", "piles", "σxx/σyy on the axis", "shoulder − centre (ρgh)", "a quarter of the height above",
               "p, no dip and no peak", "the same, Holm", f"piles for ± {ERROR}", f"piles that see {DIP}"]]
     dips = {what: mean_of(one["dip"]) for what, one in found.items()} | recorded
-    alone = [float(2 * stats.t.sf(abs(one.value) / one.error, one.freedom)) for one in dips.values()]
-    for (what, one), p, corrected in zip(dips.items(), alone, holm(alone)):
+    for what, one in dips.items():
+        p, corrected = two_sided(one), judged.get(what, math.nan)
         scatter = one.error * math.sqrt(one.freedom + 1)
         others = [cell(mean_of(found[what][figure])) if what in found else "" for figure in ("axis", "inside")]
         lines.append([what, f"{one.freedom + 1:g}", others[0], cell(one, bold=corrected < LEVEL), others[1], f"{p:.2g}",
-                      f"{corrected:.2g}", str(piles_for_error(scatter, ERROR)), str(piles_to_see(scatter, DIP))])
+                      "not in results/" if math.isnan(corrected) else f"{corrected:.2g}", str(piles_for_error(scatter, ERROR)), str(piles_to_see(scatter, DIP))])
     return table(lines)
 
 
@@ -238,7 +263,9 @@ def foresight(base, planned, piles=PLANNED):
 def main(words=None):
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("table", choices=("pours", "causes"), nargs="?", default="pours")
-    if options.parse_args(words).table == "causes":
+    options.add_argument("--write", action="store_true", help="write results/pours.json")
+    given = options.parse_args(words)
+    if given.table == "causes":
         base, found = causes()
         print(causes_table(base, found), end="")
         for piles in (PLANNED, 3 * PLANNED):
@@ -248,7 +275,10 @@ def main(words=None):
         print()
         return 0
     found = pours()
-    print(pours_table(found, recorded_pours(Results(HERE / "results"))), end="")
+    if given.write:
+        write_measured(found)
+    results = Results(HERE / "results")
+    print(pours_table(found, recorded_pours(results), corrected(results)), end="")
     together, p = small_piles(found)
     print(f"\nAll piles of up to 2,000 grains from a point: {together.value:.3f} ± {together.error:.3f}; p = {p:.1g} "
           f"of a true difference of {DIP} ± {DIP_ERROR}")

@@ -134,22 +134,40 @@ def _peaks_at_every_depth(row: Row, results: Results) -> str | None:
     return f"{word}: {', '.join(f'{n:g}' for n in found)} at {', '.join(depths)} of it"
 
 
+def _base_peaks(row: Row, results: Results) -> str | None:
+    """As _limits; of several layers, two peaks where the pressure below the load is beyond their spread below the
+    largest, and one where it is not below SHALLOW of it, else between."""
+    said, ratio = _limits(row, results), results.number(row["study"], "response.centre_over_largest", row.get("member", ""))
+    if said is None or ratio is None or not math.isfinite(ratio.error):
+        return said
+    peaks = results.plain(row["study"], row["key"] + (f".{row['member']}" if "member" in row else ""))
+    told = f"below the load {ratio.value:.2f} ± {ratio.error:.2f} of the largest"
+    sure = ratio.value + ratio.half < 1 if peaks > 1 else ratio.value - ratio.half > SHALLOW
+    return f"{said}, {told}" if sure else f"between: {peaks:.0f}, {told}"
+
+
+def _merging(row: Row, results: Results) -> str | None:
+    """Whether there are several peaks at some depth, and below it one alone down to the base."""
+    dot = f".{row['member']}" if "member" in row else ""
+    found = {depth: results.plain(row["study"], f"{row['key']}.depth_{depth:g}.peaks{dot}") for depth in DEPTHS}
+    found = {depth: peaks for depth, peaks in found.items() if peaks is not None}
+    base = results.plain(row["study"], f"{row['key']}.peaks{dot}")
+    if base is None or not found:
+        return None
+    several = [depth for depth, peaks in found.items() if peaks > 1]
+    if base > 1 or not several:
+        return f"do not merge: {base:.0f} on the base"
+    return f"merge: one peak below {max(several):g} of the depth"
+
+
 def _dip_over_all(row: Row, results: Results) -> str | None:
-    dip, centre = results.dip(row["study"]), results.plain(row["study"], "dip.ratio")
-    if dip is None or centre is None:
+    member = row.get("member", "")
+    dip, centre = results.dip(row["study"], member), results.plain(row["study"], "dip.ratio" + (f".{member}" if member else ""))
+    if dip is None:
         return None
     return (f"{dip.word}: shoulder - centre = {dip.difference.value:.3f} ± {dip.difference.error:.3f} ρgh, "
-            f"p = {dip.p:.2g} if there were none ({dip.p_holm:.2g} over all pours); "
-            f"centre over largest {centre:.2f}")
-
-
-def _dip_by_itself(row: Row, results: Results) -> str | None:
-    member = row.get("member", "")
-    word = results.text(row["study"], "dip.verdict" + (f".{member}" if member else ""))
-    found = results.number(row["study"], "dip.difference", member)
-    if word is None or found is None:
-        return None
-    return f"{word}: shoulder - centre = {found.value:.3f} ± {found.error:.3f} ρgh, by itself"
+            f"p = {dip.p:.2g} if there were none ({dip.p_holm:.2g} over all pours)"
+            + ("" if centre is None else f"; centre over largest {centre:.2f}"))
 
 
 def _pair(row: Row, results: Results) -> tuple[Measured, Measured] | None:
@@ -275,11 +293,12 @@ def _kink(row: Row, results: Results) -> str | None:
 
 
 def _convergence(row: Row, results: Results) -> str | None:
-    """Whether more disks bring H nearer to the line model: by a fifth of the difference."""
+    """Whether more disks bring a force nearer to the line model: by half of the difference, or hardly at all."""
     few, many = (results.plain(row["study"], f"{row['key']}.{row[end]}") for end in ("from", "to"))
     if few is None or many is None:
         return None
-    return (f"{'does not converge' if many > 0.8 * few else 'converges'}: differs by {100 * few:.2g} % "
+    word = "does not converge" if many > 0.8 * few else "between" if many > 0.5 * few else "converges"
+    return (f"{word}: differs by {100 * few:.2g} % "
             f"with 360 disks, by {100 * many:.2g} % with 5,490")
 
 
@@ -300,7 +319,7 @@ def _held(row: Row, results: Results) -> str | None:
     since = results.plain(row["study"], f"{row['key']}.within_from.{row['member']}")
     if None in (n, h, until, since, time):
         return None
-    when = "never" if math.isnan(until) else f"within 1 % from {since:.0f} to {until:.0f}"
+    when = "never within 1 %" if math.isnan(until) else f"first within 1 % at {since:.0f}, last at {until:.0f}"
     return (f"{'within' if max(n, h) <= 0.01 else 'beyond'} 1 %: N {100 * n:.3g} %, H {100 * h:.3g} % "
             f"after {time:.0f} sqrt(d/g); {when}")
 
@@ -392,7 +411,6 @@ RULES: dict[str, Rule] = {
     "flatter flank": _flank(False),
     "ratio": _ratio,
     "dip over all pours": _dip_over_all,
-    "dip by itself": _dip_by_itself,
     "dip inside": _dip_inside,
     "apart": _apart,
     "peaks at every depth": _peaks_at_every_depth,
@@ -409,6 +427,7 @@ RULES: dict[str, Rule] = {
     "held": _held,
     "spread": _spread,
     "deeper": _deeper,
+    "merging": _merging,
     "grains needed": _grains_needed,
     "growth": _growth,
     "nearer": _nearer,
@@ -419,7 +438,7 @@ def rule_of(row: Row) -> Rule:
     if "rule" in row:
         return RULES[row["rule"]]
     if "limits" in row:
-        return _limits
+        return _base_peaks if row["key"] == "response.peaks" else _limits
     return _plain if "key" in row else lambda *_: None  # a gap that no study has a figure for
 
 
@@ -428,7 +447,6 @@ def rule_of(row: Row) -> Rule:
 #: When the words of a rule are said.
 RULE_BANDS = {
     "dip over all pours": "at 5 %, Holm",
-    "dip by itself": "at 5 %",
     "dip inside": "at 5 % over these levels",
     "apart": "more than 1° beyond our 95 % interval",
     "peaks at every depth": "at a quarter, half and three quarters",
@@ -437,11 +455,12 @@ RULE_BANDS = {
     "fit quality": "by the chance level of χ²/dof",
     "branch": "the nearest of three",
     "kink": "beyond our 95 % interval",
-    "convergence": "the difference falls by more than a fifth, or not",
+    "convergence": "the difference falls by more than half, or by less than a fifth",
     "turning soft": "all at rest, 90 % of them soft",
     "static friction": "no rest without it",
     "held": "N and H at the end",
     "spread": "above the mean",
+    "merging": "one peak from some depth down to the base",
     "deeper": "at one of the depths of 0.1 to 0.9 more",
     "growth": "power of 0.75 to 1.25",
     "nearer": "by the largest difference",
@@ -509,12 +528,14 @@ def agreement(found: Measured, row: Row) -> str:
         return COARSE
     if miss > found.half:
         return f"differs by {with_unit(f'{miss:.2g}', row)} ({miss / found.error:.1f} standard errors)"
-    stake = row.get("effect", 0 if math.isinf(high) else abs((low + high) / 2))
+    stake = row.get("effect", 0 if math.isinf(low) or math.isinf(high) else abs((low + high) / 2))
     inside = "effect" not in row and low <= found.value - found.half and found.value + found.half <= high
     return "agrees" if inside or miss == 0 and found.half <= TOO_WIDE * stake else WIDE
 
 
 POWER, MOST_PILES = 0.8, 10_000
+SHALLOW = 0.75  # of the largest pressure: where a dip between two peaks would be seen
+DEPTHS = (0.1, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.9)  # of a layer, at which peaks are counted
 
 
 def off_band(found: Measured, row: Row) -> tuple[float, float, float]:

@@ -40,6 +40,16 @@ class Measured:
                         total**2 / sure if sure > 0 else math.inf)
 
 
+#: Members of studies that are pours of their own. pours.py measures those of "pours".
+POUR_MEMBERS = (
+    ("liffman-dropped", "implicit"), ("liffman-dropped", "implicit_coulomb"),
+    *(("liffman-dropped-grains", member) for member in (
+        "equal", "unlike", "coulomb", "pentagons", "equal_968", "unlike_968", "coulomb_968", "coulomb_unlike_968",
+        "coulomb_free_968", "pentagons_968")),
+    ("pile-line-source", "grains_300"),
+    ("pours", "point_300"), ("pours", "point_800"), ("pours", "point_2000"))
+
+
 @dataclass(frozen=True)
 class Dip:
     """Mean pressure beside the apex minus that under it, over rho g h of each pile.
@@ -50,10 +60,16 @@ class Dip:
     """
 
     study: str
+    member: str
     difference: Measured
     p: float
     p_holm: float
     word: str
+
+
+def two_sided(one: Measured) -> float:
+    """The chance of a mean this far from 0, of either sign, if it were 0 (Student's t); nan without an error."""
+    return float(2 * stats.t.sf(abs(one.value) / one.error, one.freedom)) if one.error > 0 else NAN
 
 
 def holm(p_values: list[float]) -> list[float]:
@@ -141,27 +157,27 @@ class Results:
         return [name for name in self._others if name.startswith(study + ".")]
 
     def dips(self) -> list[Dip]:
-        """The dips of all pours of the record, judged together, by the studies' names.
+        """The dips of all pours of the record, judged together, by the studies' names; then those of POUR_MEMBERS.
 
         Studies fit-* fit models to the piles of another one: they are no pours of their own.
         """
         found = []
-        for study in self.all:
-            if study.startswith("fit-"):
-                continue
-            difference = self.number(study, "dip.difference")
-            one_sided = self.plain(study, "dip.p_value")  # of no dip, whatever the recorded word's rule
-            if difference is not None and one_sided is not None:
-                found.append((study, difference, 2 * min(one_sided, 1 - one_sided)))
+        for study, member in (*((study, "") for study in self.all if not study.startswith("fit-")), *POUR_MEMBERS):
+            difference = self.number(study, "dip.difference", member)
+            # of no dip, whatever the recorded word's rule
+            one_sided = self.plain(study, "dip.p_value" + (f".{member}" if member else ""))
+            if difference is not None:
+                p = two_sided(difference) if one_sided is None else 2 * min(one_sided, 1 - one_sided)
+                found.append((study, member, difference, p))
         out = []
-        for (study, difference, p), p_holm in zip(found, holm([p for *_, p in found])):
+        for (study, member, difference, p), p_holm in zip(found, holm([p for *_, p in found])):
             word = "dip" if difference.value > 0 else "peak"
             if math.isnan(p_holm):
                 word = "undecided"
             elif p_holm >= 0.05:
                 word = "neither"
-            out.append(Dip(study, difference, p, p_holm, word))
+            out.append(Dip(study, member, difference, p, p_holm, word))
         return out
 
-    def dip(self, study: str) -> Dip | None:
-        return next((dip for dip in self.dips() if dip.study == study), None)
+    def dip(self, study: str, member: str = "") -> Dip | None:
+        return next((dip for dip in self.dips() if (dip.study, dip.member) == (study, member)), None)

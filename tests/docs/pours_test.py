@@ -1,4 +1,5 @@
 """What docs/reproduction/pours.py says of piles: numbers of piles, causes, and lists of which a part has run."""
+import json
 import sys
 from pathlib import Path
 
@@ -10,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs/reproduction"))
 
 import pours  # noqa: E402
-from summaries import Measured  # noqa: E402
+from summaries import Measured, Results  # noqa: E402
 
 GENERATOR = numpy.random.default_rng(58)
 
@@ -107,8 +108,25 @@ def test_small_piles_count_by_their_errors():
 
 def test_pours_without_states_are_in_the_table():
     lost = {"lost": Measured(0.047, 0.022, 7)}
-    lines = pours.pours_table({"layers": ensemble(8, dip=-2.0)}, lost).splitlines()
+    lines = pours.pours_table({"layers": ensemble(8, dip=-2.0)}, lost, {"layers": 0.01, "lost": 0.2}).splitlines()
     assert "| lost | 8 |  | 0.047 ± 0.022 |" in lines[3] and "**" in lines[2] and "**" not in lines[3]
+    assert "| 0.01 |" in lines[2] and "not in results/" in pours.pours_table({}, lost, {})
+
+
+def test_a_pour_has_one_p_on_both_pages(tmp_path):
+    """Members of studies count beside whole studies: of p = 0.02 and 0.04 the smaller is doubled."""
+    (tmp_path / "liffman-dropped.json").write_text(json.dumps(
+        {"dip.difference": 0.0, "dip.p_value": 0.5, "dip.difference.implicit": 0.1, "dip.p_value.implicit": 0.01}))
+    results = Results(tmp_path)
+    assert results.dip("liffman-dropped", "implicit").p_holm == pytest.approx(0.04)
+    assert pours.corrected(results) == {"equal disks, Liffman's dynamics, 968": pytest.approx(0.04)}
+
+
+def test_measured_pours_are_written_as_results(tmp_path):
+    heaps = ensemble(8, dip=0.25)
+    pours.write_measured({"point source, 300 grains": heaps, "layers, 6,300 grains": heaps}, tmp_path)
+    one = Results(tmp_path).number("pours", "dip.difference", "point_300")
+    assert one == pours.mean_of(heaps["dip"]) and Results(tmp_path).number("pours", "dip.difference", "point_800") is None
 
 
 def test_the_heaps_of_stored_states_are_found():

@@ -160,12 +160,40 @@ def test_every_key_is_one_that_summaries_have():
     known = re.compile("|".join(re.escape(key).replace(r"\*", r"[^.]+(\.[0-9]+)?") for key in listed))
     rows = [row for row in all_rows() if "key" in row or "from" in row]
     parts = {"steeper flank": "_left_deg", "fit quality": ".chi2_per_dof", "branch": ".branch", "kink": ".kink",
-             "contraction": ".contraction", "dip by itself": ".difference", "turning soft": ".at_rest",
+             "contraction": ".contraction", "dip over all pours": ".difference", "merging": ".peaks", "turning soft": ".at_rest",
              "static friction": ".at_rest", "held": ".within_until", "flatter flank": "_right_deg",
              "nearer": ".line_normal_max_difference"}
     for row in rows:
         for key in [row["key"] + parts.get(row.get("rule"), "")] if "key" in row else [row["from"], row["to"]]:
             assert known.fullmatch(key), key
+
+
+def test_peaks_on_the_base_are_told_by_the_spread_of_the_layers(made):
+    """Two peaks with 0.5 ± 0.1 below the load are two (t of seven degrees: 2.36), with 0.9 ± 0.1 they may be one."""
+    what = "response on the base, shifted rows of disks with radii within 0.2 %, mu = 0.9"  # one by the source
+
+    def cells(peaks, centre, error):
+        return row_of(made({"point-load-friction": {
+            "ensemble.realizations.varied_0.9": 8, "response.peaks.varied_0.9": peaks,
+            "response.centre_over_largest.varied_0.9": centre,
+            **({} if error is None else {"response.centre_over_largest.standard_error.varied_0.9": error})}}), what)[3:5]
+
+    assert cells(2, 0.5, 0.1) == ["more than one peak: 2, below the load 0.50 ± 0.10 of the largest", "differs"]
+    assert cells(2, 0.9, 0.1) == ["between: 2, below the load 0.90 ± 0.10 of the largest", "spread too wide to tell"]
+    assert cells(1, 0.9, 0.1)[1] == "spread too wide to tell" and cells(1, 0.99, 0.1)[1] == "agrees"
+    assert cells(1, 0.9, None) == ["one peak: 1", "agrees"]
+
+
+def test_two_peaks_merge_where_one_reaches_the_base(made):
+    what = "two peaks merge into one below a given depth, shifted rows of disks, mu = 0.6"
+
+    def cells(by_depth, base):
+        return row_of(made({"point-load-friction": {"response.peaks.friction_0.6": base, **{
+            f"response.depth_{depth}.peaks.friction_0.6": peaks for depth, peaks in by_depth.items()}}}), what)[3:5]
+
+    assert cells({0.1: 1, 0.25: 2, 0.3: 3, 0.9: 1}, 1) == ["merge: one peak below 0.3 of the depth", "agrees"]
+    assert cells({0.1: 1, 0.25: 2, 0.3: 3, 0.9: 1}, 2) == ["do not merge: 2 on the base", "differs"]
+    assert cells({0.1: 1, 0.25: 1}, 1) == ["do not merge: 1 on the base", "differs"]
 
 
 def test_agreement_by_its_rule():
@@ -189,6 +217,8 @@ def test_agreement_by_its_rule():
     # A range without an end has no middle: the whole interval lies in it, or nothing is said.
     assert agreement(Measured(1.2, 0.05), {"range": [1, float("inf")]}) == "agrees"
     assert agreement(Measured(1.2, 0.2), {"range": [1, float("inf")]}) == "spread too wide to tell"
+    assert agreement(Measured(0.1, 0.1), {"range": [float("-inf"), 0.3]}) == "agrees"
+    assert agreement(Measured(0.1, 0.1), {"range": [float("-inf"), 0.15]}) == "spread too wide to tell"
     assert agreement(Measured(1.09, 0.05), ratio | {"effect": 0.09}) == "spread too wide to tell"
     assert agreement(Measured(1.085, 0.02), ratio | {"effect": 0.09}) == "agrees"
 
@@ -1030,7 +1060,7 @@ def test_a_misfit_by_depth_is_told_with_its_error_or_its_bound(tmp_path):
     assert (clear.cell(), clear.right()) == ("10.0 ± 0.5", "20 %")
     within_noise = misfit(0.0001, 0.001, 0.001, 0.0431)
     assert (within_noise.cell(), within_noise.right()) == ("< 4.3", "5 %")
-    assert misfit(-0.0001, 0.05, 0.001, 0.3).right() == "not resolved"
+    assert misfit(-0.0001, 0.05, 0.001, 0.3).right() == "none"
     assert misfit(None, None, None, None).cell() == "–"
 
 
@@ -1061,11 +1091,13 @@ def test_layers_that_end_at_the_centres_of_loaded_grains_are_those_of_later_runs
         **figures, "response.load_depth": 0.02, chi2: 2.0, "compare.homogeneous_centres.chance": 3.0,
         "compare.by_depth_centres.chi2_per_dof": 4.0, "compare.by_depth_centres.chance": 3.0})
     run, silent = (layers_under_loads(tmp_path / "first", name, []) for name in ("deep-8", "deep-9"))
-    assert limit.centres([run, silent]).splitlines()[2:] == [
-        "| 10.0 | 0.5 | 2.00 | 30.0 ± 0.1 | 10.0 ± 0.1 | 20.0 ± 0.1 | 15.0 ± 0.1 | 12.0 ± 0.1 | 30.0 ± 0.1 | "
-        "10.0 ± 0.1 | 30.0 ± 0.1 | 10.0 ± 0.1 | 20 % | 20 % | one stiffness |"]
+    assert limit.misfits([run, silent]).splitlines()[2:] == [
+        "| 10.0 | 0.5 | 30.0 ± 0.1 | 10.0 ± 0.1 | 20.0 ± 0.1 | 12.0 ± 0.1 | 20 % | 20 % | one stiffness |",
+        "| 10.0 | 0.5 | – | – | – | – | – | – | – |"]
+    assert limit.parts([run]).splitlines()[2] == (
+        "| 10.0 | 0.5 | 2.00 | 30.0 ± 0.1 | 20.0 ± 0.1 | 10.0 ± 0.1 | – | – | 15.0 ± 0.1 | 30.0 ± 0.1 | 10.0 ± 0.1 |")
     run.summary[chi2] = 4.0
-    assert limit.centres([run]).endswith("| none |\n")
+    assert limit.misfits([run]).endswith("| none |\n")
 
 
 def test_larger_ensembles_take_the_place_of_smaller_ones(tmp_path):
