@@ -112,6 +112,12 @@ Case read_case(const std::string& file, bool quick, const Overrides& overrides) 
         fmt::format("{}: holds no key; a case names at least its study, e.g. study = \"{}\"", file,
                     default_study()));
   }
+  if (quick && fast.empty()) {
+    throw std::invalid_argument(
+        fmt::format("--quick: {} has no [quick] settings; run it without, or add a table such as "
+                    "[quick.ensemble]",
+                    file));
+  }
   std::vector<Assignment> set = parse_overrides(overrides);
   take_former_names({&base, &fast, &set});
 

@@ -164,6 +164,15 @@ std::vector<Place> common(const Comparison& c, const std::vector<std::size_t>& m
   return out;
 }
 
+// Profiles on which one of the models has values.
+std::set<std::size_t> profiles_of(const Comparison& c, const std::vector<std::size_t>& models,
+                                  const std::vector<Place>& places) {
+  std::set<std::size_t> out;
+  for (const std::size_t m : models)
+    for (const Place& at : common(c, {m}, places)) out.insert(at.profile);
+  return out;
+}
+
 // A model against the places, of one profile or all.
 Agreement agreement_of(const Comparison& c, std::size_t model, ErrorsFrom from,
                        const std::vector<Place>& among) {
@@ -203,6 +212,16 @@ void judge_comparison(Comparison& c) {
     put(agreement_of(c, m, from, places.all), c.results[m].overall);
     if (!common(c, {m}, places.all).empty()) present.push_back(m);
   }
+  // A model without values on a profile where another one has them is not judged beside it.
+  const std::size_t whole = profiles_of(c, present, places.all).size();
+  std::vector<std::size_t> left_out;
+  for (std::size_t m = 0; m < c.models.size(); ++m)
+    if (profiles_of(c, {m}, places.all).size() < whole) left_out.push_back(m);
+  if (left_out.size() == c.models.size()) left_out.clear();
+  const auto is_left_out = [&](std::size_t m) {
+    return std::find(left_out.begin(), left_out.end(), m) != left_out.end();
+  };
+  std::erase_if(present, is_left_out);
   const std::vector<Place> shared = common(c, present, places.all);
   std::vector<Candidate> candidates;
   for (std::size_t m = 0; m < c.models.size(); ++m) {
@@ -217,12 +236,18 @@ void judge_comparison(Comparison& c) {
     one.model.rel_l2 = overall.rel_l2;
     const bool has = std::find(present.begin(), present.end(), m) != present.end();
     if (has && !shared.empty()) one.forecast = forecast_of(c, m, from, shared);
+    if (is_left_out(m)) one.model.misfit = one.model.chance = one.model.rel_l2 = kNan;
     candidates.push_back(std::move(one));
   }
   c.judgement = judge(evidence_of(c, shared.empty() ? ErrorsFrom::nothing : from, shared),
                       std::move(candidates));
   c.judgement.equal = !spread && c.realizations > 1;
   c.judgement.measured = c.measured();
+  for (const std::size_t m : left_out) {
+    c.judgement.doubts.push_back(
+        fmt::format("{} has no values on {} of {} profiles, where others have, and is not judged.",
+                    c.models[m].label, whole - profiles_of(c, {m}, places.all).size(), whole));
+  }
   if (from == ErrorsFrom::data && places.without_error > 0) {
     c.judgement.doubts.push_back(fmt::format(
         "{} of {} values have no error and are left out of misfit and position: give them errors.",

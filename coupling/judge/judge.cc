@@ -76,7 +76,10 @@ bool contains(const JudgedModel& general, const std::string& special) {
          general.special_cases.end();
 }
 
-bool kept(const JudgedModel& m) { return m.distinguishable != Answer::yes && !m.description; }
+// Where models are judged, one without values is not.
+bool kept(bool judged, const JudgedModel& m) {
+  return !m.description && (judged ? m.distinguishable == Answer::no : true);
+}
 
 // best, distinguishable and equations from the marked models.
 void conclude(bool judged, Judgement& out) {
@@ -84,7 +87,7 @@ void conclude(bool judged, Judgement& out) {
   std::set<std::string> equations, families;
   for (const JudgedModel& m : out.models) {
     if (!m.description) families.insert(family_of(m));
-    if (!kept(m)) continue;
+    if (!kept(judged, m)) continue;
     equations.insert(m.equations);
     if (best == nullptr || (judged && m.free < best->free)) best = &m;
   }
@@ -99,7 +102,7 @@ void conclude(bool judged, Judgement& out) {
   out.distinguishable = Answer::yes;
   for (const JudgedModel& m : out.models) {
     const bool relative = families.size() > 1 ? family_of(m) == family_of(*best) : &m == best;
-    if (kept(m) && !relative && !contains(m, best->name)) out.distinguishable = Answer::no;
+    if (kept(judged, m) && !relative && !contains(m, best->name)) out.distinguishable = Answer::no;
   }
 }
 
@@ -150,7 +153,7 @@ void mark_distinguishable(std::vector<JudgedModel>& models, const std::vector<do
     const bool behind = k > 0 && m.behind > kSame && m.behind > spread && 2 * apart[k] > spread &&
                         !(m.heights_behind < -kSame) &&  // false for nan
                         !(m.aic_behind <= kNoSupport);
-    m.distinguishable = behind ? Answer::yes : Answer::no;
+    m.distinguishable = std::isnan(m.score) ? Answer::unknown : behind ? Answer::yes : Answer::no;
   }
   const std::vector<JudgedModel> judged = models;
   for (std::size_t k = 1; k < models.size(); ++k) {
@@ -226,7 +229,8 @@ Judgement judge(const Evidence& e, std::vector<Candidate> candidates) {
   }
   if (judged) {
     mark_distinguishable(out.models, apart, least_errors(e.realizations));
-    std::stable_partition(out.models.begin(), out.models.end(), kept);
+    std::stable_partition(out.models.begin(), out.models.end(),
+                          [](const JudgedModel& m) { return kept(true, m); });
   }
   conclude(judged, out);
 

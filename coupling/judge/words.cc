@@ -64,11 +64,15 @@ struct Group {
 
 std::vector<Group> groups_of(const Judgement& j) {
   const auto family = [](const JudgedModel& m) { return m.family.empty() ? m.name : m.family; };
-  bool several = false;
-  for (const JudgedModel& m : j.models) several |= family(m) != family(j.models.front());
+  bool several = false, judged = false;
+  for (const JudgedModel& m : j.models) {
+    several |= family(m) != family(j.models.front());
+    judged |= m.distinguishable != Answer::unknown;
+  }
   std::vector<Group> out;
   for (const JudgedModel& m : j.models) {
     if (m.description && j.models.size() > 1) continue;
+    if (judged && m.distinguishable == Answer::unknown) continue;  // it has no values
     const std::string name = !several                                   ? m.label
                              : family(m).find(' ') == std::string::npos ? family(m)
                                                                         : "the " + family(m);

@@ -16,7 +16,7 @@ void declare_grain_files_keys(SectionKeys s) {
       "sample with sample.filling = dropped: first states (state_000) of earlier runs between "
       "walls, which take the place of dropping; another material may load them, of the same "
       "density. Of study point-load in the plane: layers of the same load.force, gravity, density "
-      "and friction; the keys packing.* are not used");
+      "and friction; of study boussinesq-limit: under any load; the keys packing.* are not used");
   s.or_none();
 }
 

@@ -140,7 +140,7 @@ class Analysis {
   std::string write_table(const std::string& name, const std::vector<SlabModuli>& slabs,
                           double depth) {
     const std::string text = moduli_table(slabs, depth, false);
-    out_.texts.emplace_back("moduli_" + name, text);
+    out_.texts.emplace_back(name, text);
     const auto folder = tables_of(out_);
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -207,8 +207,8 @@ class Analysis {
         slabs.back().mean[SlabConstants::e_v] / slabs.front().mean[SlabConstants::e_v];
     out_.summary["moduli.growth"] = growth;
     out_.summary["moduli.residual"] = whole_.residual_transverse;
-    const std::string by_depth = write_table("by_depth.csv", slabs, depth_);
-    const std::string homogeneous = write_table("homogeneous.csv", {whole_}, depth_);
+    const std::string by_depth = write_table("moduli_by_depth.csv", slabs, depth_);
+    const std::string homogeneous = write_table("moduli_homogeneous.csv", {whole_}, depth_);
     const bool space = dim_ == 3;
     const auto add = [&](const std::string& label, ModelChoice model, const std::string& base) {
       model.label = label;
@@ -237,7 +237,7 @@ class Analysis {
     add_all("homogeneous", even, even_half_space, even, even_half_space);
     if (!response_.finite_elements) return;
     const std::string lower =
-        write_table("by_depth_below_centres.csv", below_centres(slabs), depth_ - centres());
+        write_table("moduli_by_depth_below_centres.csv", below_centres(slabs), depth_ - centres());
     add_all("by_depth", layer(by_depth), half_space(by_depth), layer(lower), half_space(lower));
     add("by_depth_inside", loaded_inside(by_depth), "rough");
   }

@@ -36,9 +36,7 @@ std::optional<double> weights_of(const Realization& one) {
 }
 
 // A layer that an earlier run left, whatever load it carried.
-std::unique_ptr<dem::Run> make_limit_layer(const Case& value, std::int64_t number, int threads) {
-  if (value.get<GrainFiles>().files.empty()) return make_layer(value, number, threads);
-  const FinishedRun place = finished_run(value, number, kLayerStates, kLayerStudy);
+dem::RunResult finished_layer(const Case& value, const FinishedRun& place) {
   dem::RunResult out;
   for (const std::string& state : kLayerStates)
     out.snapshots.emplace_back(state, dem::read_snapshot(place.file, place.group + "/" + state));
@@ -47,11 +45,20 @@ std::unique_ptr<dem::Run> make_limit_layer(const Case& value, std::int64_t numbe
     throw std::invalid_argument(fmt::format("packing.dim: found {}, the layer {}:{} has {}", dim,
                                             place.file, place.group, found));
   }
-  return run_of(std::move(out));
+  require_same_material(value.get<dem::PointLoadSetup>().material, out.snapshots.front().second,
+                        place);
+  return out;
+}
+
+std::unique_ptr<dem::Run> make_limit_layer(const Case& value, std::int64_t number, int threads) {
+  if (value.get<GrainFiles>().files.empty()) return make_layer(value, number, threads);
+  return run_of(finished_layer(value, finished_run(value, number, kLayerStates, kLayerStudy)));
 }
 
 dem::Outlook foresee_limit_layer(const Case& value, std::int64_t draws) {
   if (value.get<GrainFiles>().files.empty()) return foresee_layer(value, draws);
+  try_finished_runs(value, kLayerStates, kLayerStudy,
+                    [&](const FinishedRun& layer) { finished_layer(value, layer); });
   return {};
 }
 

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "coupling/run/ensemble.h"
-#include "coupling/run/finished_runs.h"
 #include "coupling/studies/point_load/layer_figures.h"
 #include "coupling/studies/point_load/simulation.h"
 #include "dem/snapshot/contact_changes.h"
@@ -25,21 +24,6 @@ void require_same(const char* key, double asked, double found, const FinishedRun
                                           place.file, place.group, found));
 }
 
-void check_same_material(const dem::MaterialSetup& asked, const dem::Snapshot& layer,
-                         const FinishedRun& place) {
-  require_same("material.gravity", asked.gravity, layer.gravity.norm(), place);
-  for (const dem::Grain& g : layer.grains) {
-    if (g.fixed || !(g.volume > 0)) continue;
-    require_same("material.density", asked.density, g.mass / g.volume, place);
-    break;
-  }
-  for (const dem::Contact& c : layer.contacts) {
-    if (c.j < 0) continue;
-    require_same("material.friction", asked.friction, c.friction, place);
-    break;
-  }
-}
-
 dem::RunResult finished_layer(const FinishedRun& place, const dem::PointLoadSetup& setup) {
   const dem::Snapshot unloaded = dem::read_snapshot(place.file, place.group + "/unloaded");
   const dem::Snapshot loaded = dem::read_snapshot(place.file, place.group + "/loaded");
@@ -49,7 +33,7 @@ dem::RunResult finished_layer(const FinishedRun& place, const dem::PointLoadSetu
         fmt::format("load.force: found {:g}, the layer {}:{} carries {:g} N", force, place.file,
                     place.group, found));
   }
-  check_same_material(setup.material, unloaded, place);
+  require_same_material(setup.material, unloaded, place);
   dem::RunResult out;
   out.snapshots = {{"unloaded", unloaded}, {"loaded", loaded}};
   auto& f = out.figures;
@@ -62,6 +46,21 @@ dem::RunResult finished_layer(const FinishedRun& place, const dem::PointLoadSetu
 }
 
 }  // namespace
+
+void require_same_material(const dem::MaterialSetup& asked, const dem::Snapshot& layer,
+                           const FinishedRun& place) {
+  require_same("material.gravity", asked.gravity, layer.gravity.norm(), place);
+  for (const dem::Grain& g : layer.grains) {
+    if (g.fixed || !(g.volume > 0)) continue;
+    require_same("material.density", asked.density, g.mass / g.volume, place);
+    break;
+  }
+  for (const dem::Contact& c : layer.contacts) {
+    if (c.j < 0) continue;
+    require_same("material.friction", asked.friction, c.friction, place);
+    break;
+  }
+}
 
 std::unique_ptr<dem::Run> make_layer(const Case& value, std::int64_t number, int threads) {
   if (!value.get<GrainFiles>().files.empty()) {

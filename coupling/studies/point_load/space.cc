@@ -156,23 +156,24 @@ class SpaceAnalysis {
   }
 
   void add_fields(StudyResult& out, SpaceLoadPage& page) const {
-    const auto add = [&](const std::string& name, const Ensemble& of, const MethodAverages& a) {
-      out.fields.emplace_back(name, all_.described(of.mean(), a.options));
+    const auto add = [&](const std::string& name, Field field, const MethodAverages& a) {
+      out.fields.emplace_back(name, all_.described(std::move(field), a.options));
       return out.fields.back().second;
     };
     const MethodAverages& first = all_.methods.front();
     for (const MethodAverages& a : all_.methods) {
-      const Field cut = add(a.method + "_cut", a.map, a);
+      const Field cut = add(a.method + "_cut", a.map.mean(), a);
       if (&a == &first) page.cut = cut;
       for (std::size_t d = 0; d < a.lines.size(); ++d) {
         const std::string depth = fmt::format("{:g}", all_.setup.depths[d]);
-        add(a.method + "_rings_" + depth, a.lines[d], a);
-        add(a.method + "_line_" + depth, a.beside[d], a);
+        // With the layers' single values, by which `compare` judges as this run does.
+        add(a.method + "_rings_" + depth, a.lines[d].with_samples(), a);
+        add(a.method + "_line_" + depth, a.beside[d].mean(), a);
       }
     }
-    page.base = add("base_response", base_, first);
-    add("base_rings", base_rings_, first);
-    page.base_unloaded = add("base_unloaded_rings", base_unloaded_, first);
+    page.base = add("base_response", base_.mean(), first);
+    add("base_rings", base_rings_.with_samples(), first);
+    page.base_unloaded = add("base_unloaded_rings", base_unloaded_.mean(), first);
   }
 
   void compare_models(StudyResult& out, SpaceLoadPage& page) const {

@@ -88,19 +88,21 @@ class PlaneAnalysis {
   }
 
   void add_fields(StudyResult& out) const {
-    const auto add = [&](const std::string& name, const Ensemble& of, const MethodAverages& a) {
-      out.fields.emplace_back(name, all_.described(of.mean(), a.options));
+    const auto add = [&](const std::string& name, Field field, const MethodAverages& a) {
+      out.fields.emplace_back(name, all_.described(std::move(field), a.options));
     };
     for (const MethodAverages& a : all_.methods) {
-      add(a.method + "_response", a.map, a);
+      add(a.method + "_response", a.map.mean(), a);
       if (&a == &all_.methods.front()) out.map = out.fields.back().second;
-      add(a.method + "_unloaded", a.beside.front(), a);
+      add(a.method + "_unloaded", a.beside.front().mean(), a);
       for (std::size_t d = 0; d < a.lines.size(); ++d) {
-        add(fmt::format("{}_depth_{:g}", a.method, all_.setup.depths[d]), a.lines[d], a);
+        // With the layers' single values, by which `compare` judges as this run does.
+        add(fmt::format("{}_depth_{:g}", a.method, all_.setup.depths[d]), a.lines[d].with_samples(),
+            a);
       }
     }
-    add("base_response", base_, all_.methods.front());
-    add("base_unloaded", base_unloaded_, all_.methods.front());
+    add("base_response", base_.with_samples(), all_.methods.front());
+    add("base_unloaded", base_unloaded_.mean(), all_.methods.front());
     out.base_unloaded = out.fields.back().second;
   }
 
