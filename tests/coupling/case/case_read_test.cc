@@ -13,6 +13,7 @@
 #include "coupling/studies/pile/simulation.h"
 #include "coupling/studies/point_load/simulation.h"
 #include "tests/coupling/check_scene.h"
+#include "tests/refusal.h"
 
 namespace grainfield::coupling {
 namespace {
@@ -202,6 +203,10 @@ vtu = false
 
 TEST(ReadCase, OverridesComeLast) {
   const std::string text = "[material]\nfriction = 0.1\n[quick.material]\nfriction = 0.2\n";
+  const Folder folder;
+  const std::string slow = folder.write("slow.toml", "[material]\nfriction = 0.1\n");
+  EXPECT_THAT(refusal_of([&] { read_case(slow, true, {}); }),
+              HasSubstr("slow.toml has no [quick] settings"));
   EXPECT_EQ(accepted(text).get<dem::PointLoadSetup>().material.friction, 0.1);
   EXPECT_EQ(accepted(text, {}, true).get<dem::PointLoadSetup>().material.friction, 0.2);
   EXPECT_EQ(

@@ -165,6 +165,36 @@ TEST(Compare, VerdictOfAClearCase) {
                                            "within the errors: misfit "));
 }
 
+// A layer that ends above a profile, or outside all of them, would win by the few values it has.
+TEST(Compare, AModelWithoutValuesOnAProfileIsNotJudged) {
+  Scene s = scene(8, 0.92, 0.05);
+  Profile base = s.profiles.front();
+  base.name = base.key = "base";
+  s.profiles.push_back(base);
+  for (ModelProfiles& m : s.models) m.values.push_back(m.values.front());
+  const VectorXd none = VectorXd::Constant(base.x.size(), std::nan(""));
+  s.models.push_back({"short", "short layer", "finite layer", {s.models[1].values.front(), none}});
+  s.models.push_back({"tiny", "tiny layer", "finite layer", {none, none}});
+  const Comparison c = compared(s);
+  const Judgement& j = c.judgement;
+  EXPECT_EQ(j.best, "layer_smooth");
+  EXPECT_EQ(j.models[0].supported(), Answer::yes);
+  for (const char* name : {"short", "tiny"}) {
+    const JudgedModel& m = *j.find(name);
+    EXPECT_TRUE(std::isnan(m.misfit)) << name;
+    EXPECT_EQ(m.distinguishable, Answer::unknown) << name;
+    EXPECT_EQ(m.supported(), Answer::unknown) << name;
+  }
+  EXPECT_LT(c.results[3].per_profile[0].chi2_per_dof, 5);  // where it has values
+  EXPECT_THAT(j.doubts,
+              testing::ElementsAre("short layer has no values on 1 of 2 profiles, where others "
+                                   "have, and is not judged.",
+                                   "tiny layer has no values on 2 of 2 profiles, where others "
+                                   "have, and is not judged."));
+  EXPECT_THAT(said(c), testing::StartsWith("The grains support the finite layer, not the half "
+                                           "plane (8 realizations, 95 %)."));
+}
+
 TEST(Compare, VerdictWhenNoModelFits) {
   Scene s = scene(8, 0.92, 0.005);
   for (Profile& p : s.profiles) {

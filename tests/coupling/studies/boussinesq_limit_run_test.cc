@@ -98,7 +98,8 @@ TEST(BoussinesqLimitRun, FromCaseToReport) {
               HasSubstr("realization,place,at_over_h,displacement,homogeneous_rough,by_depth_rough,"
                         "by_depth_centres\n"));
   // Labels name the table of a model without its folder, which is gone.
-  EXPECT_THAT(read_text(folder / "out/verdict.md"), HasSubstr("(base=rough, moduli=by_depth.csv"));
+  EXPECT_THAT(read_text(folder / "out/verdict.md"),
+              HasSubstr("(base=rough, moduli=moduli_by_depth.csv"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out/.models_of_realization_000"));
   // The surface is level with the highest disks of the lattice.
   EXPECT_NEAR(number(s, "response.load_depth"), 0.0045, 1e-4);
@@ -125,6 +126,10 @@ TEST(BoussinesqLimitRun, FromCaseToReport) {
   EXPECT_LT(number(t, "response.settlement"), 0.9 * number(s, "response.settlement"));
   EXPECT_EQ(t.count("limit.by_depth_rough.base.w_depths.squared"), 0U);
   EXPECT_EQ(t.count("limit.homogeneous_rough.base.w_depths.squared"), 1U);
+  // Grains of another friction are other grains.
+  const Output other = program("check " + from + " --set material.friction=0.3");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("material.friction: found 0.3, the layer "));
 }
 
 TEST(BoussinesqLimitRun, RefusesWhatLinearResponseDoesNotKnow) {
