@@ -18,7 +18,7 @@ its error, ensemble.realizations.MEMBER their number. The keys, by what is measu
               deeper than SKIN of the height, over that nearer to the surface; forces.centre_over_beside is the STRONG
               quantile of the forces in the lower half of the height within CENTRE half bases of the axis over
               that within BESIDE
-    network   of a heap's grains with two contacts or more: network.components_over_equations is the number of force
+    network   of a heap's, or layer's, grains with two contacts or more: network.components_over_equations is the number of force
               components, of which a sliding contact has one, over that of equations of equilibrium (isostatic: 1).
               network.g2 is tr F over nu c of the grains DEEP mean diameters from surface and floor, and
               network.g2_over_theory that over its value by the contacts that fit on a grain (Luding)
@@ -203,8 +203,11 @@ def forces_of(run):
 
 
 def network_of(run):
-    """How many forces hold a heap, and how the contacts of its grains grow with their size."""
-    state = run["pile"]
+    """How many forces hold a heap or a layer, and how the contacts of a heap's grains grow with their size.
+
+    A contact without friction has one component, and a disk without any two equations: none of its forces turns it.
+    """
+    state = run["pile"] if "pile" in run else run["unloaded"]
     contacts, volumes, places = state["contacts"], state["grains/volume"][:], state["grains/position"][:]
     i, j, sliding = (contacts[name][:].astype(int) for name in ("i", "j", "sliding"))
     bears = contacts["normal_force"][:] > 0
@@ -220,7 +223,12 @@ def network_of(run):
         if less.sum() == left.sum():
             break
         left = less
-    found = {"network.components_over_equations": (2 * left.sum() - sliding[left].sum()) / (3 * alive.sum())}
+    rough = left & (contacts["friction"][:] > 0)
+    components = left.sum() + (rough & (sliding == 0)).sum()
+    turned = alive & ((numbers(rough) > 0) | ("grains/outline" in state))
+    found = {"network.components_over_equations": components / (2 * alive.sum() + turned.sum())}
+    if "pile" not in run:
+        return found
     radii = numpy.sqrt(volumes / math.pi)
     skin = 2 * DEEP * radii.mean()
     deep = (surface(places) - places[:, 1] > skin) & (places[:, 1] - places[:, 1].min() > skin)

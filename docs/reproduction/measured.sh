@@ -197,6 +197,7 @@ tails() { # FILE MEMBER
   [ -e "$here/states/tails/$1.h5.xz" ] || return 0
   xz -dkc "$here/states/tails/$1.h5.xz" > "tails-$2.h5"
   measure tails point-load-polydisperse "tails-$2.h5" --member "$2"
+  measure network point-load-polydisperse "tails-$2.h5" --member "$2"
 }
 for mu in 0 0.2 0.5 1; do
   tails "area-mu-$mu" "area_$mu"

@@ -679,14 +679,21 @@ def test_forces_that_hold_a_heap_by_hand():
     state["contacts"]["sliding"] = measure.numpy.array([0, 1, 0, 0, 0, 1, 1, 0])
     state["contacts"]["normal_force"] = measure.numpy.array([1, 1, 1, 1, 1, 1, 0, 1.0])
     state["grains/volume"] = measure.numpy.full(5, 3.0)
+    state["contacts"]["friction"] = measure.numpy.full(8, 0.5)
     assert measure.network_of({"pile": state})["network.components_over_equations"] == 9 / 9
+    # A layer without friction: five normal forces on three disks, which have two equations each, or pentagons with three.
+    state["contacts"]["friction"] = measure.numpy.zeros(8)
+    assert measure.network_of({"unloaded": state}) == {"network.components_over_equations": 5 / 6}
+    state["grains/outline"] = measure.numpy.zeros(25)
+    assert measure.network_of({"unloaded": state}) == {"network.components_over_equations": 5 / 9}
 
 
 def test_contacts_that_grow_as_the_theory_says_have_its_g2():
     """Equal grains have 1; in rows deep enough the theory's own numbers of contacts give its g2."""
     places = [(x, y, 0) for y in range(20) for x in range(8)]
     state = heap(places, [(k, (k + 1) % 160, (0, 1, 0), (0, 0, 0)) for k in range(160)])
-    state["contacts"] |= {"sliding": measure.numpy.zeros(160), "normal_force": measure.numpy.ones(160)}
+    state["contacts"] |= {"sliding": measure.numpy.zeros(160), "normal_force": measure.numpy.ones(160),
+                          "friction": measure.numpy.ones(160)}
     state["grains/volume"] = measure.numpy.full(160, math.pi / 4)
     found = measure.network_of({"pile": state})
     assert found["network.g2"] == pytest.approx(1) and found["network.g2_over_theory"] == pytest.approx(1)
