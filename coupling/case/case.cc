@@ -114,8 +114,8 @@ Case read_case(const std::string& file, bool quick, const Overrides& overrides) 
   }
   if (quick && fast.empty()) {
     throw std::invalid_argument(
-        fmt::format("--quick: {} has no [quick] settings; run it without, or add a table such as "
-                    "[quick.ensemble]",
+        fmt::format("--quick: found no [quick] settings in {}; run it without, or add a table such "
+                    "as [quick.ensemble]",
                     file));
   }
   std::vector<Assignment> set = parse_overrides(overrides);

@@ -164,12 +164,11 @@ std::vector<Place> common(const Comparison& c, const std::vector<std::size_t>& m
   return out;
 }
 
-// Profiles on which one of the models has values.
-std::set<std::size_t> profiles_of(const Comparison& c, const std::vector<std::size_t>& models,
+// Profiles on which a model has values, and where the data have.
+std::set<std::size_t> profiles_of(const Comparison& c, std::size_t model,
                                   const std::vector<Place>& places) {
   std::set<std::size_t> out;
-  for (const std::size_t m : models)
-    for (const Place& at : common(c, {m}, places)) out.insert(at.profile);
+  for (const Place& at : common(c, {model}, places)) out.insert(at.profile);
   return out;
 }
 
@@ -212,15 +211,17 @@ void judge_comparison(Comparison& c) {
     put(agreement_of(c, m, from, places.all), c.results[m].overall);
     if (!common(c, {m}, places.all).empty()) present.push_back(m);
   }
-  // A model without values on a profile where another one has them is not judged beside it.
-  const std::size_t whole = profiles_of(c, present, places.all).size();
-  std::vector<std::size_t> left_out;
-  for (std::size_t m = 0; m < c.models.size(); ++m)
-    if (profiles_of(c, {m}, places.all).size() < whole) left_out.push_back(m);
-  if (left_out.size() == c.models.size()) left_out.clear();
-  const auto is_left_out = [&](std::size_t m) {
-    return std::find(left_out.begin(), left_out.end(), m) != left_out.end();
-  };
+  // A model without values on a profile where another one has them is not judged beside it, unless
+  // each lacks one.
+  std::vector<std::size_t> reached;  // profiles, by model
+  std::set<std::size_t> all;
+  for (std::size_t m = 0; m < c.models.size(); ++m) {
+    std::set<std::size_t> own = profiles_of(c, m, places.all);
+    reached.push_back(own.size());
+    all.merge(own);
+  }
+  const bool one_has_all = std::find(reached.begin(), reached.end(), all.size()) != reached.end();
+  const auto is_left_out = [&](std::size_t m) { return one_has_all && reached[m] < all.size(); };
   std::erase_if(present, is_left_out);
   const std::vector<Place> shared = common(c, present, places.all);
   std::vector<Candidate> candidates;
@@ -243,10 +244,11 @@ void judge_comparison(Comparison& c) {
                       std::move(candidates));
   c.judgement.equal = !spread && c.realizations > 1;
   c.judgement.measured = c.measured();
-  for (const std::size_t m : left_out) {
+  for (std::size_t m = 0; m < c.models.size(); ++m) {
+    if (!is_left_out(m)) continue;
     c.judgement.doubts.push_back(
         fmt::format("{} has no values on {} of {} profiles, where others have, and is not judged.",
-                    c.models[m].label, whole - profiles_of(c, {m}, places.all).size(), whole));
+                    c.models[m].label, all.size() - reached[m], all.size()));
   }
   if (from == ErrorsFrom::data && places.without_error > 0) {
     c.judgement.doubts.push_back(fmt::format(

@@ -153,7 +153,9 @@ void mark_distinguishable(std::vector<JudgedModel>& models, const std::vector<do
     const bool behind = k > 0 && m.behind > kSame && m.behind > spread && 2 * apart[k] > spread &&
                         !(m.heights_behind < -kSame) &&  // false for nan
                         !(m.aic_behind <= kNoSupport);
-    m.distinguishable = std::isnan(m.score) ? Answer::unknown : behind ? Answer::yes : Answer::no;
+    m.distinguishable = k > 0 && std::isnan(m.behind) ? Answer::unknown
+                        : behind                      ? Answer::yes
+                                                      : Answer::no;
   }
   const std::vector<JudgedModel> judged = models;
   for (std::size_t k = 1; k < models.size(); ++k) {

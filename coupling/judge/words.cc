@@ -64,15 +64,19 @@ struct Group {
 
 std::vector<Group> groups_of(const Judgement& j) {
   const auto family = [](const JudgedModel& m) { return m.family.empty() ? m.name : m.family; };
-  bool several = false, judged = false;
-  for (const JudgedModel& m : j.models) {
-    several |= family(m) != family(j.models.front());
-    judged |= m.distinguishable != Answer::unknown;
-  }
+  const auto has_values = [](const JudgedModel& m) {
+    return !std::isnan(m.score) || !std::isnan(m.rel_l2);
+  };
+  const bool any_values = std::any_of(j.models.begin(), j.models.end(), has_values);
+  const auto competes = [&](const JudgedModel& m) {
+    return !m.description && (has_values(m) || !any_values);
+  };
+  const bool any = std::any_of(j.models.begin(), j.models.end(), competes);
+  bool several = false;
+  for (const JudgedModel& m : j.models) several |= family(m) != family(j.models.front());
   std::vector<Group> out;
   for (const JudgedModel& m : j.models) {
-    if (m.description && j.models.size() > 1) continue;
-    if (judged && m.distinguishable == Answer::unknown) continue;  // it has no values
+    if (any && !competes(m)) continue;
     const std::string name = !several                                   ? m.label
                              : family(m).find(' ') == std::string::npos ? family(m)
                                                                         : "the " + family(m);

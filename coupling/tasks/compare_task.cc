@@ -93,17 +93,6 @@ std::vector<std::string> chosen(const CompareRequest& request) {
   if (std::any_of(lines.begin(), lines.end(), in_rings)) {
     std::erase_if(lines, [&](const std::string& name) { return !in_rings(name); });
   }
-  // A run's verdict goes by its first method, the one that sees its base.
-  const auto base = std::find_if(lines.begin(), lines.end(), [](const std::string& name) {
-    return name == "base_response" || name == "base_rings";
-  });
-  if (base != lines.end()) {
-    const auto method = [&](const std::string& name) {
-      return field_in(request, name).word("method");
-    };
-    const std::string first = method(*base);
-    std::erase_if(lines, [&](const std::string& name) { return method(name) != first; });
-  }
   // A file of a run holds lines at its depths; one of `average` a map and the base.
   if (lines.empty() || (lines.size() == 1 && lines.front() == "base_response")) {
     lines.insert(lines.begin(), maps.begin(), maps.end());

@@ -67,6 +67,8 @@ result" means not run or not measured; the row says which.
 - **Fitted constants** have the larger of two errors, the fit's own and the bootstrap's over piles. The fit's own is
   the jackknife's; with the other weights it is the covariance's.
 - **Ratios of two ensembles** have the error of the one minus the source's ratio times the other.
+- **Peaks on the base of several layers.** Two peaks count where the pressure below the load is below the largest one
+  beyond our interval, one peak where our interval excludes a dip by a quarter. Otherwise the spread is too wide.
 - **"Hardly changes"** means by less than a tenth in our whole interval. "Changes" means by more than a tenth in our
   whole interval. Between them the spread is too wide to tell. "Negligible" means less than a tenth of the
   effect of μ, likewise.

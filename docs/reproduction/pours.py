@@ -47,10 +47,10 @@ POURS = (
     ("point source, 800 grains", ("pile-rest-800-awake", "pile-rest-800-sleeping", "memory/memory-800-*"),
      ("pours", "point_800")),
     ("point source, 2,000 grains", ("pile-point-source-2000", "piles/point-2000-*"), ("pours", "point_2000")),
-    ("point source, 6,500 grains", ("piles/point-6500-*",), None),
-    ("elliptic grains from a point, 800", ("memory/elliptic-800-*",), None),
-    ("disks from a point, 2,000", ("disks/disks-2000-*",), None),
-    ("disks from a point in LAMMPS, 2,000", ("lammps/disks-2000-*",), None),
+    ("point source, 6,500 grains", ("piles/point-6500-*",), ("pours", "point_6500")),
+    ("elliptic grains from a point, 800", ("memory/elliptic-800-*",), ("pours", "elliptic_800")),
+    ("disks from a point, 2,000", ("disks/disks-2000-*",), ("pours", "disks_2000")),
+    ("disks from a point in LAMMPS, 2,000", ("lammps/disks-2000-*",), ("pours", "lammps_disks_2000")),
     ("layers, 6,300 grains", ("pile-line-source",), ("pile-line-source", "")),
     ("shifted layers, 6,500 grains", ("pile-asymmetric-line",), ("pile-asymmetric-line", "")),
 )
@@ -158,7 +158,7 @@ def recorded_pours(results):
 
 def corrected(results):
     """{what: p over all pours} as reproduction.md has it, of the pours that results/ has."""
-    names = {what: name for what, _, name in POURS if name} | {what: name for what, *name in RECORDED}
+    names = {what: name for what, _, name in POURS} | {what: name for what, *name in RECORDED}
     judged = {(dip.study, dip.member): dip.p_holm for dip in results.dips()}
     return {what: judged[tuple(name)] for what, name in names.items() if tuple(name) in judged}
 
@@ -167,7 +167,7 @@ def write_measured(found, results=HERE / "results"):
     """Writes results/pours.json, the difference of every pour that only POURS has."""
     out = {}
     for what, _, name in POURS:
-        if name and name[0] == "pours" and what in found:
+        if name[0] == "pours" and what in found:
             one = mean_of(found[what]["dip"])
             out |= {f"dip.difference.{name[1]}": one.value, f"dip.standard_error.{name[1]}": one.error,
                     f"ensemble.realizations.{name[1]}": one.freedom + 1}

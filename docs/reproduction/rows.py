@@ -155,7 +155,9 @@ def _merging(row: Row, results: Results) -> str | None:
     if base is None or not found:
         return None
     several = [depth for depth, peaks in found.items() if peaks > 1]
-    if base > 1 or not several:
+    if not several:
+        return "never two: one peak at every depth"
+    if base > 1:
         return f"do not merge: {base:.0f} on the base"
     return f"merge: one peak below {max(several):g} of the depth"
 
@@ -297,7 +299,7 @@ def _convergence(row: Row, results: Results) -> str | None:
     few, many = (results.plain(row["study"], f"{row['key']}.{row[end]}") for end in ("from", "to"))
     if few is None or many is None:
         return None
-    word = "does not converge" if many > 0.8 * few else "between" if many > 0.5 * few else "converges"
+    word = "does not converge" if many > 0.8 * few else "neither" if many > 0.5 * few else "converges"
     return (f"{word}: differs by {100 * few:.2g} % "
             f"with 360 disks, by {100 * many:.2g} % with 5,490")
 

@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs/reproduction"))
 
 import pours  # noqa: E402
-from summaries import Measured, Results  # noqa: E402
+from summaries import POUR_MEMBERS, Measured, Results  # noqa: E402
 
 GENERATOR = numpy.random.default_rng(58)
 
@@ -120,6 +120,11 @@ def test_a_pour_has_one_p_on_both_pages(tmp_path):
     results = Results(tmp_path)
     assert results.dip("liffman-dropped", "implicit").p_holm == pytest.approx(0.04)
     assert pours.corrected(results) == {"equal disks, Liffman's dynamics, 968": pytest.approx(0.04)}
+
+
+def test_every_pour_is_judged_with_the_others():
+    members = {name for name in [name for *_, name in pours.POURS] + [tuple(name) for _, *name in pours.RECORDED] if name[1]}
+    assert members <= set(POUR_MEMBERS)
 
 
 def test_measured_pours_are_written_as_results(tmp_path):

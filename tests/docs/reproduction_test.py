@@ -203,7 +203,7 @@ def test_two_peaks_merge_where_one_reaches_the_base(made):
 
     assert cells({0.1: 1, 0.25: 2, 0.3: 3, 0.9: 1}, 1) == ["merge: one peak below 0.3 of the depth", "agrees"]
     assert cells({0.1: 1, 0.25: 2, 0.3: 3, 0.9: 1}, 2) == ["do not merge: 2 on the base", "differs"]
-    assert cells({0.1: 1, 0.25: 1}, 1) == ["do not merge: 1 on the base", "differs"]
+    assert cells({0.1: 1, 0.25: 1}, 1) == ["never two: one peak at every depth", "differs"]
 
 
 def test_agreement_by_its_rule():

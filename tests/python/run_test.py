@@ -36,6 +36,8 @@ map_rows = 4
 models = ["flamant"]
 [output]
 report = false
+[quick.ensemble]
+realizations = 1
 """
 
 

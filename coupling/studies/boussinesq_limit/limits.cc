@@ -78,9 +78,8 @@ std::string told_limits(const StudyResult& r) {
     const auto right = number(fmt::format("limit.{}.base.w_depths.right_to", model.key));
     if (!right) continue;
     if (!out.empty()) out += "; ";
-    out += *right < kEvidence
-               ? fmt::format("{} is right to {:.2g} %", model.key, 100 * *right)
-               : fmt::format("{}: not resolved (below {:.2g} %)", model.key, 100 * *right);
+    out += *right < kEvidence ? fmt::format("{} is right to {:.2g} %", model.key, 100 * *right)
+                              : fmt::format("{} only to {:.2g} %", model.key, 100 * *right);
   }
   const double deep = number("layer.depth_diameters").value_or(0);
   if (out.empty()) {

@@ -206,7 +206,7 @@ TEST(ReadCase, OverridesComeLast) {
   const Folder folder;
   const std::string slow = folder.write("slow.toml", "[material]\nfriction = 0.1\n");
   EXPECT_THAT(refusal_of([&] { read_case(slow, true, {}); }),
-              HasSubstr("slow.toml has no [quick] settings"));
+              HasSubstr("--quick: found no [quick] settings in "));
   EXPECT_EQ(accepted(text).get<dem::PointLoadSetup>().material.friction, 0.1);
   EXPECT_EQ(accepted(text, {}, true).get<dem::PointLoadSetup>().material.friction, 0.2);
   EXPECT_EQ(

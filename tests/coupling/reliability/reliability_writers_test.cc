@@ -43,7 +43,9 @@ bool at_work(const std::string& out) {
 
 TEST(Writers, TheSecondIsRefusedAndTheFirstEndsWhole) {
   const Folder folder;
-  const std::string file = folder.write("x.toml", small_layer()), out = folder / "out";
+  const std::string file =
+                        folder.write("x.toml", small_layer("[quick.ensemble]\nrealizations = 1\n")),
+                    out = folder / "out";
   const Start alone{{"run", file, "-o", folder / "alone"}, {}, "", {}};
   ASSERT_EQ(finish(alone).code, 0);
   Child first({{"run", file, "-o", out, "--threads", "1"}, {}, "", {}});
