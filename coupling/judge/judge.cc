@@ -153,9 +153,8 @@ void mark_distinguishable(std::vector<JudgedModel>& models, const std::vector<do
     const bool behind = k > 0 && m.behind > kSame && m.behind > spread && 2 * apart[k] > spread &&
                         !(m.heights_behind < -kSame) &&  // false for nan
                         !(m.aic_behind <= kNoSupport);
-    m.distinguishable = k > 0 && std::isnan(m.behind) ? Answer::unknown
-                        : behind                      ? Answer::yes
-                                                      : Answer::no;
+    const bool unseen = std::isnan(m.behind) && !std::isnan(models.front().behind);
+    m.distinguishable = unseen ? Answer::unknown : behind ? Answer::yes : Answer::no;
   }
   const std::vector<JudgedModel> judged = models;
   for (std::size_t k = 1; k < models.size(); ++k) {
