@@ -124,6 +124,12 @@ dropped() { # NAME MEMBER: piles by implicit motion, six a run, judged as the ex
   measure summary liffman-dropped "dropped-$2/summary.json" --member "$2" --keys dip. dem.repose_angle
 }
 dropped implicit implicit
+states liffman-dropped
+for width in 0.02 0.03 0.04 0.05 0.06 0.08 0.12 0.15; do
+  run window-$width liffman-dropped --set "$(set_files liffman-dropped)" --set heap.centre=$width
+  measure summary liffman-dropped window-$width/summary.json --member centre_$width \
+    --keys dip.difference dip.standard_error dip.p_value
+done
 # Its two runs of which every pile comes to rest.
 [ ! -e implicit-4.h5 ] || {
   run dropped-resting liffman-dropped --set 'grains.files=["implicit-2.h5","implicit-4.h5"]' --set ensemble.realizations=12
