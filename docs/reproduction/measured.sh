@@ -136,7 +136,7 @@ done
   measure summary liffman-dropped dropped-resting/summary.json --member implicit_resting --keys dip.
 }
 dropped coulomb implicit_coulomb --set material.friction=0.5
-for name in equal unlike coulomb coulomb_unlike pentagons; do
+for name in equal unlike coulomb coulomb_unlike coulomb_free pentagons; do
   record=$here/states/liffman-grains/${name}_968.json
   [ ! -e "$record" ] || measure summary liffman-dropped-grains "$record" --member ${name}_968 --keys dip. dem.repose_angle
 done
