@@ -28,7 +28,7 @@ from summaries import Measured, Results, holm  # noqa: E402
 NAN = float("nan")
 RESULTS = Results(ROOT / "docs/reproduction/results")
 #: Rows without a result: "not run", "not measured" and the like. The number may only fall.
-OPEN_ROWS = 1
+OPEN_ROWS = 0
 #: Results of programs with changes that are in no commit. The set may only shrink.
 UNCOMMITTED = {"box-shear", "contact-laws", "pile-asymmetric-line",
                "pile-elliptic", "pile-fields-elliptic", "pile-line-source", "point-load-3d"}
