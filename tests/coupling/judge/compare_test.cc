@@ -195,6 +195,15 @@ TEST(Compare, AModelWithoutValuesOnAProfileIsNotJudged) {
                                            "plane (8 realizations, 95 %)."));
 }
 
+TEST(Compare, WithoutErrorsAModelWithoutValuesIsNotNamed) {
+  Scene s = scene(1, 0.92, 0);
+  s.models[0].values = {VectorXd::Constant(s.profiles.front().x.size(), std::nan(""))};
+  const Comparison c = compared(s);
+  EXPECT_THAT(said(c), testing::AllOf(HasSubstr("the finite layer misses"), Not(HasSubstr("nan")),
+                                      Not(HasSubstr("half plane"))));
+  EXPECT_EQ(c.judgement.doubts.size(), 1U);
+}
+
 TEST(Compare, VerdictWhenNoModelFits) {
   Scene s = scene(8, 0.92, 0.005);
   for (Profile& p : s.profiles) {
