@@ -78,7 +78,7 @@ bool contains(const JudgedModel& general, const std::string& special) {
 
 // Where models are judged, one without values is not.
 bool kept(bool judged, const JudgedModel& m) {
-  return !m.description && (judged ? m.distinguishable == Answer::no : true);
+  return !m.description && (!judged || m.distinguishable == Answer::no);
 }
 
 // best, distinguishable and equations from the marked models.

@@ -182,8 +182,9 @@ def pours_table(found, recorded, judged):
         p, corrected = two_sided(one), judged.get(what, math.nan)
         scatter = one.error * math.sqrt(one.freedom + 1)
         others = [cell(mean_of(found[what][figure])) if what in found else "" for figure in ("axis", "inside")]
+        over_all = "not in results/" if math.isnan(corrected) else f"{corrected:.2g}"
         lines.append([what, f"{one.freedom + 1:g}", others[0], cell(one, bold=corrected < LEVEL), others[1], f"{p:.2g}",
-                      "not in results/" if math.isnan(corrected) else f"{corrected:.2g}", str(piles_for_error(scatter, ERROR)), str(piles_to_see(scatter, DIP))])
+                      over_all, str(piles_for_error(scatter, ERROR)), str(piles_to_see(scatter, DIP))])
     return table(lines)
 
 
