@@ -70,12 +70,12 @@ BASE = ("memory/memory-800-*", "pile-rest-800-awake", "pile-rest-800-sleeping")
 FIGURES = ("axis", "dip", "inside", "fraction", "slope")
 OF_ALL_BASES = ("axis", "dip", "inside")
 #: In the order of the list, as a reader says them.
-WORDS = {"tangential_11": "tangential over normal stiffness 11 (2/7)", "layers": "in horizontal layers",
-         "broad": "source within ± 6 mean radii (± 0.5)",
-         "follow": "source 2 diameters above the top", "friction_0.9": "friction 0.9 (0.54)",
-         "equal": "equal sizes (± 30 %)", "fall": "from 0.5 m (0.25 m)", "energy": "law `energy` (`overlap_area`)",
-         "friction_0.3": "friction 0.3 (0.54)", "corners_24": "24 corners (6 to 8)",
-         "stiff": "grains ten times stiffer"}
+WORDS = {"layers": "in horizontal layers", "friction_0.9": "friction 0.9 (0.54)",
+         "follow": "source 2 diameters above the top", "equal": "equal sizes (± 30 %)",
+         "fall": "from 0.5 m (0.25 m)", "broad": "source within ± 6 mean radii (± 0.5)",
+         "corners_24": "24 corners (6 to 8)", "friction_0.3": "friction 0.3 (0.54)",
+         "energy": "law `energy` (`overlap_area`)", "stiff": "grains ten times stiffer",
+         "tangential_11": "tangential over normal stiffness 11 (2/7)"}
 ERROR, AXIS_ROUL, POWER, LEVEL = 0.016, 0.77, 0.8, 0.05
 DIP, DIP_ERROR = 0.08, 0.02  # Roul's, and the error of his nine piles if they scatter as ours of 6,500 grains
 MOST_PILES = 10_000
