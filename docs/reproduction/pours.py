@@ -51,7 +51,7 @@ POURS = (
     ("elliptic grains from a point, 800", ("memory/elliptic-800-*",), ("pours", "elliptic_800")),
     ("disks from a point, 2,000", ("disks/disks-2000-*",), ("pours", "disks_2000")),
     ("disks from a point in LAMMPS, 2,000", ("lammps/disks-2000-*",), ("pours", "lammps_disks_2000")),
-    ("layers, 6,400 grains", ("pile-line-source",), ("pile-line-source", "")),
+    ("layers, 6,300 grains", ("pile-line-source",), ("pile-line-source", "")),
     ("shifted layers, 6,500 grains", ("pile-asymmetric-line",), ("pile-asymmetric-line", "")),
 )
 #: Studies and members of which results/ has the difference alone: states are lost or not kept. Other sleep: older rules.
