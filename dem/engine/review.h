@@ -14,7 +14,10 @@
 //          for a look, when what has been out of balance since it fell asleep would have moved it
 //          by kLookWay of its diameter (Sleepers::creep): there it sleeps again only with half of
 //          what is out of balance then;
-//          A wall that moves wakes what it will touch before the next review.
+//          with all others, for wake_time, when at a look the sleepers above some level pass on
+//          less than the weight above it by wake_levels of that: residuals too small to wake a
+//          grain add up over the levels of a large packing. A wall that moves wakes what it will
+//          touch before the next review.
 //   sleep  a grain that has moved by less than quiet_move of its diameter during quiet_time against
 //          what it touches, when it has crept there by less than quiet_creep diameters a second,
 //          its forces at zero velocity balance to quiet_force of its load, and it moves with no
@@ -37,6 +40,7 @@
 #include "dem/engine/report.h"
 #include "dem/engine/search.h"
 #include "dem/engine/world.h"
+#include "dem/sleep/hidden_load.h"
 
 namespace grainfield::dem {
 
@@ -99,6 +103,7 @@ class Review {
     world_.gather_touches();
     const bool driven = world_.walls.any_driven();
     const bool look = world_.steps % (kReviewEvery * kLookEvery) == 0;
+    if (look) unbalanced_.assign(world_.grains.bodies.size(), zero<typename World::Vector>());
     const double weight = std::min(1.0, kReviewEvery * world_.time_step / sleep.wake_time);
     for (int j = world_.awake; j < world_.grains.size(); ++j) {
       if (!sleepers.is_stirred(j) && !driven && !look) continue;
@@ -120,16 +125,38 @@ class Review {
         }
         if (driven && is_reached_by_wall(j)) any |= wake_up(j);
         settled = (now.force - mean.force).norm() <= kSettledMean * sleep.wake_force * now.load;
+        if (look) unbalanced_[j] = settled ? now.force : mean.force;
       }
       sleepers.set_judged(j, settled);
     }
+    return (look && wake_levels()) || any;
+  }
+
+  /// Wakes all, for wake_time at least, where the sleepers hide more than wake_levels.
+  bool wake_levels() {
+    const auto& gravity = world_.around.gravity;
+    const double g = length_of(gravity);
+    if (!(g > 0) || world_.cell.is_periodic()) return false;
+    shares_.clear();
+    for (int i = 0; i < world_.grains.size(); ++i) {
+      if (world_.grains.is_fixed(i)) continue;
+      const bool asleep = i >= world_.awake && world_.sleepers.is_asleep(i);
+      shares_.push_back({-world_.grains.bodies[i].position.dot(gravity) / g,
+                         world_.weight(i).norm(), asleep ? unbalanced_[i].dot(gravity) / g : 0.0});
+    }
+    if (!(largest_hidden_share(shares_) > world_.sleep.wake_levels)) return false;
+    const long until = world_.steps + std::lround(world_.sleep.wake_time / world_.time_step);
+    bool any = false;
+    for (int j = world_.awake; j < world_.grains.size(); ++j) any |= wake_up(j, until);
     return any;
   }
 
-  bool wake_up(int j) {
+  bool wake_up(int j) { return wake_up(j, world_.steps); }
+  /// It is taken to be quiet since step `since`, also a later one.
+  bool wake_up(int j, long since) {
     return !world_.grains.is_fixed(j) &&
            world_.sleepers.set_asleep(j, false, world_.grains.bodies[j].position,
-                                      world_.rotation(j), world_.steps);
+                                      world_.rotation(j), since);
   }
 
   /// Wakes along the network of frozen contacts: of a force that leaves grain `from` out of balance
@@ -501,6 +528,8 @@ class Review {
   };
   std::vector<Moved> moved_;  // of those that fall asleep, with an energy balance
   std::vector<std::pair<int, typename World::Vector>> passed_;
+  std::vector<typename World::Vector> unbalanced_;  // at a look, of sleepers
+  std::vector<LevelShare> shares_;
 };
 
 }  // namespace grainfield::dem

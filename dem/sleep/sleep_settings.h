@@ -15,19 +15,20 @@ namespace grainfield::dem {
 /// for a look, when what is left out of balance would have moved it.
 struct SleepSettings {
   bool on = false;
-  double quiet_time = 1e-3;   ///< s that a grain must be quiet; longer: fewer errors, more awake
-  double quiet_move = 8e-4;   ///< quiet: moved less than this share of its diameter in quiet_time
-  double quiet_creep = 0.05;  ///< sleeps: has crept by less than this, diameters/s, while quiet
-  double quiet_force = 0.01;  ///< sleeps: out of balance by less than this share of its load
-  double wake_force = 0.015;  ///< wakes: out of balance by more than this share of its load, ...
-  double wake_time = 0.05;    ///< s: ... in the mean of about this time, ...
-  double wake_shock = 0.5;    ///< ... or by more than this share at once
-  double wake_speed = 0.5;    ///< wakes: touched at more than this times sqrt(g d), ...
+  double quiet_time = 1e-3;     ///< s that a grain must be quiet; longer: fewer errors, more awake
+  double quiet_move = 8e-4;     ///< quiet: moved less than this share of its diameter in quiet_time
+  double quiet_creep = 0.05;    ///< sleeps: has crept by less than this, diameters/s, while quiet
+  double quiet_force = 0.01;    ///< sleeps: out of balance by less than this share of its load
+  double wake_force = 0.015;    ///< wakes: out of balance by more than this share of its load, ...
+  double wake_time = 0.05;      ///< s: ... in the mean of about this time, ...
+  double wake_shock = 0.5;      ///< ... or by more than this share at once
+  double wake_levels = 0.0075;  ///< wakes all: a level misses more than this share of its load
+  double wake_speed = 0.5;      ///< wakes: touched at more than this times sqrt(g d), ...
   double wake_reach = 2;  ///< ... or within this times d v / sqrt(g d) of a grain at such a speed v
 
   auto members() const {
     return std::tie(on, quiet_time, quiet_move, quiet_creep, quiet_force, wake_force, wake_time,
-                    wake_shock, wake_speed, wake_reach);
+                    wake_shock, wake_levels, wake_speed, wake_reach);
   }
 };
 

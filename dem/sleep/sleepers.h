@@ -26,7 +26,7 @@ class Sleepers {
 
   /// How still a body has been.
   struct Stillness {
-    long steps = 0;  ///< since it is within quiet_move of one place; -1: it has just left that
+    long steps = 0;  ///< since it is within quiet_move of one place; below 0: not yet quiet
     double way = 0;  ///< from where it was then, in its diameters
   };
   /// What leaves a sleeper out of balance.
@@ -84,7 +84,7 @@ class Sleepers {
   void settled() { changed_ = false; }
   void set_changed() { changed_ = true; }
 
-  /// True when the body was in the other state.
+  /// True when the body was in the other state. It is quiet here since this step, also a later one.
   bool set_asleep(int i, bool asleep, const Vector& position, const Rotation& rotation, long step) {
     if (is_asleep(i) == asleep) return false;
     asleep_[i] = asleep ? 1 : 0;

@@ -197,7 +197,7 @@ bool set_sleep(PileSetup& setup, const std::string& key, double value) {
       {"quiet_creep", &k.quiet_creep}, {"quiet_force", &k.quiet_force},
       {"wake_force", &k.wake_force},   {"wake_time", &k.wake_time},
       {"wake_shock", &k.wake_shock},   {"wake_speed", &k.wake_speed},
-      {"wake_reach", &k.wake_reach}};
+      {"wake_levels", &k.wake_levels}, {"wake_reach", &k.wake_reach}};
   for (const auto& [name, number] : known) {
     if (key == name) {
       *number = value;

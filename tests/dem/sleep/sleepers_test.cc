@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dem/laws/contact.h"
+#include "dem/sleep/hidden_load.h"
 #include "dem/space/space3.h"
 
 namespace grainfield::dem {
@@ -231,6 +232,33 @@ TEST(Sleepers, SleepAgainAfterALookOnlyWithHalfOfIt) {
   EXPECT_EQ(s.stillness(0, {0, 0}, 0, 1, 510, settings).steps, 10);
   EXPECT_EQ(s.stillness(0, {1, 0}, 0, 1, 520, settings).steps, -1);  // it has gone elsewhere
   EXPECT_EQ(s.sleeping_share(0, settings), 0.01);
+}
+
+TEST(Sleepers, HideAShareOfTheWeightAboveALevel) {
+  const auto share = [](std::vector<LevelShare> grains) { return largest_hidden_share(grains); };
+  EXPECT_EQ(share({}), 0);
+  EXPECT_EQ(share({{0, 0, 0}, {1, 0, 0}}), 0);
+  // A tenth of each weight: the same share of every level, whatever the order.
+  std::vector<LevelShare> alike;
+  for (const int k : {7, 2, 9, 0, 4}) alike.push_back({0.1 * k, 2, 0.2});
+  EXPECT_NEAR(share(alike), 0.1, 1e-15);
+  // The residuals of two grains cancel below both of them, not between them.
+  EXPECT_NEAR(share({{0, 1, -0.3}, {1, 1, 0.3}, {2, 1, 0}}), 0.15, 1e-15);
+  // Too much is passed on as well.
+  EXPECT_NEAR(share({{0, 1, 0}, {1, 1, -0.3}}), 0.3, 1e-15);
+  // What carries less than a twentieth of the whole is not asked.
+  EXPECT_NEAR(share({{1, 0.04, 0.04}, {0, 0.96, 0}}), 0.04, 1e-15);
+  EXPECT_NEAR(share({{1, 0.06, 0.04}, {0, 0.94, 0}}), 0.04 / 0.06, 1e-12);
+}
+
+// Woken for a while: it is not quiet before that is over, and no longer than it moves.
+TEST(Sleepers, MayBeWokenForAWhile) {
+  const SleepSettings settings;
+  Plane2 s;
+  s.add({0, 0}, 0, 0, true);
+  EXPECT_TRUE(s.set_asleep(0, false, {0, 0}, 0, 300));
+  EXPECT_EQ(s.stillness(0, {0, 0}, 0, 1, 200, settings).steps, -100);
+  EXPECT_EQ(s.stillness(0, {0, 0}, 0, 1, 350, settings).steps, 50);
 }
 
 TEST(Sleepers, FrozenContactsAreInNobodysOrder) {

@@ -1,0 +1,38 @@
+// What sleepers hide of the load of the levels of a packing.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace grainfield::dem {
+
+/// A grain above or below a level.
+struct LevelShare {
+  double height = 0;  ///< m, against gravity
+  double weight = 0;  ///< N
+  double hidden = 0;  ///< N: its residual force along gravity, of a sleeper; 0 awake
+};
+
+// Levels with less than this share of the whole weight above them are not asked.
+inline constexpr double kLeastAbove = 0.05;
+
+/// Largest share of the weight above a level that the sleepers above it hide from it: the length of
+/// the sum of their residual forces over that weight. Residuals of one sign add up from grain to
+/// grain, so that a bound on each grain's own bounds this sum only by the number of layers times
+/// that bound. Sorts `grains`, highest first; 0 without weight.
+inline double largest_hidden_share(std::vector<LevelShare>& grains) {
+  std::sort(grains.begin(), grains.end(),
+            [](const LevelShare& a, const LevelShare& b) { return a.height > b.height; });
+  double whole = 0, above = 0, hidden = 0, largest = 0;
+  for (const LevelShare& g : grains) whole += g.weight;
+  for (const LevelShare& g : grains) {
+    above += g.weight;
+    hidden += g.hidden;
+    if (above > 0 && above >= kLeastAbove * whole) {
+      largest = std::max(largest, std::fabs(hidden) / above);
+    }
+  }
+  return largest;
+}
+
+}  // namespace grainfield::dem
