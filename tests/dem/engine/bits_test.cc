@@ -64,6 +64,7 @@ Scene rough_floor(std::string name, std::uint64_t hash, Kind kind, bool sleep) {
   s.settings.sleep.quiet_creep = 1;
   s.settings.sleep.quiet_force = 0.2;
   s.settings.sleep.wake_force = 0.3;
+  s.settings.sleep.wake_levels = 1e3;
   s.settings.sleep.wake_time = 0.02;
   s.grains[3].rotates = false;
   for (int k = 0; k < 8; ++k) {
