@@ -14,10 +14,11 @@
 //          for a look, when what has been out of balance since it fell asleep would have moved it
 //          by kLookWay of its diameter (Sleepers::creep): there it sleeps again only with half of
 //          what is out of balance then;
-//          with all others, for wake_time, when at a look the sleepers above some level pass on
-//          less than the weight above it by wake_levels of that: residuals too small to wake a
-//          grain add up over the levels of a large packing. A wall that moves wakes what it will
-//          touch before the next review.
+//          with all others, when at a look the force that a level passes on differs from the weight
+//          above it by more than wake_levels of that: residuals too small to wake a grain add up
+//          over the levels of a large packing. What then stays in place is awake for wake_time. Not
+//          in periodic cells.
+//          A wall that moves wakes what it will touch before the next review.
 //   sleep  a grain that has moved by less than quiet_move of its diameter during quiet_time against
 //          what it touches, when it has crept there by less than quiet_creep diameters a second,
 //          its forces at zero velocity balance to quiet_force of its load, and it moves with no
@@ -132,7 +133,8 @@ class Review {
     return (look && wake_levels()) || any;
   }
 
-  /// Wakes all, for wake_time at least, where the sleepers hide more than wake_levels.
+  /// Wakes all, where the sleepers hide more than wake_levels of the weight above some level. They
+  /// count as quiet only from wake_time later on.
   bool wake_levels() {
     const auto& gravity = world_.around.gravity;
     const double g = length_of(gravity);

@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace grainfield::dem {
@@ -16,19 +17,22 @@ struct LevelShare {
 // Levels with less than this share of the whole weight above them are not asked.
 inline constexpr double kLeastAbove = 0.05;
 
-/// Largest share of the weight above a level that the sleepers above it hide from it: the length of
-/// the sum of their residual forces over that weight. Residuals of one sign add up from grain to
+/// Largest share of the weight above a level that the sleepers above it hide from it: |sum of their
+/// residual forces along gravity| over that weight. Residuals of one sign add up from grain to
 /// grain, so that a bound on each grain's own bounds this sum only by the number of layers times
-/// that bound. Sorts `grains`, highest first; 0 without weight.
+/// that bound. What sleepers hide sideways, or of opposite signs at one height, is not seen; where
+/// walls press harder than the weight, the share is larger than that of the load. Sorts `grains`,
+/// highest first; 0 without weight.
 inline double largest_hidden_share(std::vector<LevelShare>& grains) {
   std::sort(grains.begin(), grains.end(),
             [](const LevelShare& a, const LevelShare& b) { return a.height > b.height; });
   double whole = 0, above = 0, hidden = 0, largest = 0;
   for (const LevelShare& g : grains) whole += g.weight;
-  for (const LevelShare& g : grains) {
-    above += g.weight;
-    hidden += g.hidden;
-    if (above > 0 && above >= kLeastAbove * whole) {
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    above += grains[k].weight;
+    hidden += grains[k].hidden;
+    const bool level = k + 1 == grains.size() || grains[k + 1].height < grains[k].height;
+    if (level && above > 0 && above >= kLeastAbove * whole) {
       largest = std::max(largest, std::fabs(hidden) / above);
     }
   }

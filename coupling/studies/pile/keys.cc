@@ -139,9 +139,10 @@ void declare_sleep_keys(SectionKeys s) {
   s.number("wake_shock", "-", IN(sleep.wake_shock), {1e-12, 1e3},
            "wakes: out of balance by more than this share of its load in the mean over 50 steps");
   s.only("sleep.on", {"true"});
-  s.number("wake_levels", "-", IN(sleep.wake_levels), {1e-12, 1e3},
-           "wakes all for wake_time: the sleepers above a level pass on less than the weight above "
-           "it, by more than this share of it");
+  s.number(
+      "wake_levels", "-", IN(sleep.wake_levels), {1e-12, 1e3},
+      "wakes all, for wake_time: the force that the sleepers above a level pass on to it differs "
+      "from the weight above by more than this share of it; 1000: never");
   s.only("sleep.on", {"true"});
   s.number("wake_speed", "-", IN(sleep.wake_speed), {1e-6, 1e6},
            "wakes: touched at more than this times sqrt(g d)");

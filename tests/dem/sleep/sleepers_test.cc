@@ -249,9 +249,11 @@ TEST(Sleepers, HideAShareOfTheWeightAboveALevel) {
   // What carries less than a twentieth of the whole is not asked.
   EXPECT_NEAR(share({{1, 0.04, 0.04}, {0, 0.96, 0}}), 0.04, 1e-15);
   EXPECT_NEAR(share({{1, 0.06, 0.04}, {0, 0.94, 0}}), 0.04 / 0.06, 1e-12);
+  // Grains at one height are one level, in any order.
+  EXPECT_NEAR(share({{1, 1, 0.3}, {1, 1, -0.3}, {0, 1, 0}}), 0, 1e-15);
 }
 
-// Woken for a while: it is not quiet before that is over, and no longer than it moves.
+// Woken for a while: it is not quiet before that is over, or has moved elsewhere.
 TEST(Sleepers, MayBeWokenForAWhile) {
   const SleepSettings settings;
   Plane2 s;
@@ -259,6 +261,8 @@ TEST(Sleepers, MayBeWokenForAWhile) {
   EXPECT_TRUE(s.set_asleep(0, false, {0, 0}, 0, 300));
   EXPECT_EQ(s.stillness(0, {0, 0}, 0, 1, 200, settings).steps, -100);
   EXPECT_EQ(s.stillness(0, {0, 0}, 0, 1, 350, settings).steps, 50);
+  EXPECT_EQ(s.stillness(0, {1, 0}, 0, 1, 400, settings).steps, -1);
+  EXPECT_EQ(s.stillness(0, {1, 0}, 0, 1, 450, settings).steps, 50);
 }
 
 TEST(Sleepers, FrozenContactsAreInNobodysOrder) {
