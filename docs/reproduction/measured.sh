@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # measured.sh PROGRAM FOLDER: makes the runs in FOLDER and measures again what measure.py has added to results/.
 # An hour of processor time. The stored values are of grainfield 0.9.0 (4f4be8ee; of layers and of single piles of
-# 2,000 grains 915d9e90; of line sources and of sleep 282ed2eb).
+# 2,000 grains 915d9e90; of line sources and of sleep 282ed2eb; of sleep where levels are asked 868ed2cb).
 set -euo pipefail
 program=$(realpath "$1")
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -92,15 +92,23 @@ measure summary fit-asymmetric fit/summary.json --member line --keys fit.
 # What sleep hides and changes: the stored heaps of line sources are awake.
 slept=(relaxation. axis.stress_ratio repose. dem.repose heap. dem.grains time.dem_cpu_s)
 dip=(dip.difference dip.standard_error)
-run asleep pile-line-source
+run asleep pile-line-source --set sleep.wake_levels=1000
 measure summary pile-line-source asleep/summary.json --member asleep --keys "${slept[@]}" "${dip[@]}"
 run asleep-fit fit-cantelaube-line --set 'grains.files=["asleep/snapshots.h5"]'
 measure summary fit-cantelaube-line asleep-fit/summary.json --member asleep --keys fit.
-run asleep-shifted pile-asymmetric-line --set ensemble.realizations=8
+run asleep-shifted pile-asymmetric-line --set ensemble.realizations=8 --set sleep.wake_levels=1000
 measure summary pile-asymmetric-line asleep-shifted/summary.json --member asleep --keys "${slept[@]}" "${dip[@]}"
 run asleep-2000 pile-point-source --set source.grains=2000 --set source.height=0.3 --set ensemble.seed=2001 \
-  --set ensemble.realizations=1
+  --set ensemble.realizations=1 --set sleep.wake_levels=1000
 measure summary pile-point-source asleep-2000/summary.json --member asleep_2000 --keys "${slept[@]}"
+# The same where the levels are asked.
+run asked pile-line-source
+measure summary pile-line-source asked/summary.json --member asked --keys "${slept[@]}" "${dip[@]}"
+run asked-fit fit-cantelaube-line --set 'grains.files=["asked/snapshots.h5"]'
+measure summary fit-cantelaube-line asked-fit/summary.json --member asked --keys fit.
+run asked-2000 pile-point-source --set source.grains=2000 --set source.height=0.3 --set ensemble.seed=2001 \
+  --set ensemble.realizations=1
+measure summary pile-point-source asked-2000/summary.json --member asked_2000 --keys "${slept[@]}"
 
 # Lattice piles: the base; rows apart at the source's softness, which settle to a resultant of 1e-6 before they buckle;
 # rows that touch below nearly hard disks.

@@ -53,9 +53,9 @@ std::size_t texts_of_changes() {
 }
 
 TEST(Fingerprint, EveryMemberCounts) {
-  EXPECT_EQ(texts_of_changes<PileSetup>(), 9U + 11 + 2 + 27 + 4 + 5 + 11 + 4);
+  EXPECT_EQ(texts_of_changes<PileSetup>(), 9U + 11 + 2 + 27 + 4 + 5 + 12 + 4);
   EXPECT_EQ(texts_of_changes<PointLoadSetup>(), 25U + 27 + 4 + 5 + 12);
-  EXPECT_EQ(texts_of_changes<ConeSetup>(), 16U + 27 + 4 + 5 + 10);
+  EXPECT_EQ(texts_of_changes<ConeSetup>(), 16U + 27 + 4 + 5 + 11);
   EXPECT_EQ(texts_of_changes<LatticePileSetup>(), 6U + 27 + 4 + 5);
 }
 
