@@ -185,6 +185,11 @@ class PileAnalysis {
       judgement.findings.push_back(fmt::format("No heap formed {}.", count));
     }
     for (std::string& line : dip_lines(dip)) judgement.findings.push_back(std::move(line));
+    if (dip.verdict != "undecided" && value_.get<FitSetup>().models.empty()) {
+      judgement.findings.emplace_back(
+          "To learn which theories they support, run in the folder of the results: grainfield fit "
+          "snapshots.h5");
+    }
   }
 
   // The models of [fit] with free constants: their judgement, lines and constants become the run's,
