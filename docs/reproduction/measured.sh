@@ -106,6 +106,9 @@ run asked pile-line-source
 measure summary pile-line-source asked/summary.json --member asked --keys "${slept[@]}" "${dip[@]}"
 run asked-fit fit-cantelaube-line --set 'grains.files=["asked/snapshots.h5"]'
 measure summary fit-cantelaube-line asked-fit/summary.json --member asked --keys fit.
+run line-16-fit fit-cantelaube-line --set 'grains.files=["pile-line-source.h5","asked/snapshots.h5"]' \
+  --set ensemble.realizations=16
+measure summary fit-cantelaube-line line-16-fit/summary.json --member line_16 --keys fit. dip.
 run asked-2000 pile-point-source --set source.grains=2000 --set source.height=0.3 --set ensemble.seed=2001 \
   --set ensemble.realizations=1
 measure summary pile-point-source asked-2000/summary.json --member asked_2000 --keys "${slept[@]}"

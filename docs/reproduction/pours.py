@@ -63,6 +63,7 @@ RECORDED = (("equal disks from a point, 968", "liffman-dropped-grains", "equal_9
             ("pentagons with friction, 968", "liffman-dropped-grains", "pentagons_968"),
             ("equal disks, Liffman's dynamics, 968", "liffman-dropped", "implicit"),
             ("equal disks with friction, Liffman's dynamics, 968", "liffman-dropped", "implicit_coulomb"),
+            ("layers, 6,300 grains, that slept", "pile-line-source", "asked"),
             ("point source, 6,500 grains, other sleep", "pile-point-source", ""),
             ("elliptic grains from a point, 6,500, other sleep", "pile-elliptic", ""),
             ("moving point source, 6,500 grains, other sleep", "pile-asymmetric-point", ""))

@@ -46,7 +46,7 @@ POUR_MEMBERS = (
     *(("liffman-dropped-grains", member) for member in (
         "equal", "unlike", "coulomb", "pentagons", "equal_968", "unlike_968", "coulomb_968", "coulomb_unlike_968",
         "coulomb_free_968", "pentagons_968")),
-    ("pile-line-source", "grains_300"),
+    ("pile-line-source", "grains_300"), ("pile-line-source", "asked"),
     *(("pours", member) for member in (
         "point_300", "point_800", "point_2000", "point_6500", "elliptic_800", "disks_2000", "lammps_disks_2000")))
 
