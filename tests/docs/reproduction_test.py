@@ -445,7 +445,8 @@ def test_tested_rows_are_corrected_for_one_another(made):
     axis = {"pile-line-source": {"ensemble.realizations": 8, "axis.stress_ratio": 0.36,
                                  "axis.stress_ratio.standard_error": 0.011}}
     assert said(axis).startswith("differs by 0.05 (3.0 standard errors of both, p = 0.021 over all")
-    axis["pile-line-source"] |= {"dip.difference": -0.12, "dip.standard_error": 0.01}
+    axis["fit-cantelaube-line"] = {"ensemble.realizations.line_16": 16, "dip.difference.line_16": -0.12,
+                                   "dip.standard_error.line_16": 0.01}
     assert said(axis).startswith("differs by 0.05 (3.0 standard errors of both, p = 0.041 over all")
     axis["pile-line-source"] |= {"density.ratio": 1, "density.ratio.standard_error": 0.01}
     assert said(axis).startswith("uninformative: p = 0.021 by itself, 0.062 over all tested rows; ")
