@@ -168,7 +168,6 @@ TEST(Sleep, AnImpactMovesSleepersAsItMovesTheAwake) {
   RecordProperty("rigid", fmt::format("{:.3g}", rigid));
 }
 
-// Fixed grains lie among the sleepers: one that comes later must be found as well.
 // With every grain awake a packing rings on long after an impact: its slow common swings, in which
 // neighbours hardly move against each other, pass the dashpots by. Sleepers that hide little ring
 // with it; those that hide much do not.
@@ -216,6 +215,7 @@ TEST(Sleep, AwakePackingsRingOnAfterAnImpact) {
   RecordProperty("later", fmt::format("{:.3g}", awake[at + 20]));
 }
 
+// Fixed grains lie among the sleepers: one that comes later must be found as well.
 TEST(Sleep, AFixedGrainThatComesLateHolds) {
   const auto engine = polygon_box(polygon_settings(1, true), 4, 2);
   engine->step(60000);
@@ -379,13 +379,30 @@ TEST(Sleep, LoadHiddenByManyReachesTheFloorOfATallColumn) {
   RecordProperty("asked", fmt::format("{:.3g}", asked.hidden));
 }
 
+using Checkpoints = std::vector<std::pair<long, std::string>>;  // with their steps
+
+/// Of a box of eight columns, which has gone on to `uninterrupted`.
+void expect_the_same_when_resumed(const Checkpoints& checkpoints, const EngineSettings& settings,
+                                  const Engine& uninterrupted) {
+  const std::string end = uninterrupted.checkpoint();
+  for (const auto& [step, checkpoint] : checkpoints) {
+    auto resumed = make_engine(settings);
+    resumed->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
+    resumed->add_wall({"left", {0, 0, 0}, {1, 0, 0}, 0.2});
+    resumed->add_wall({"right", {8 * 0.023, 0, 0}, {-1, 0, 0}, 0.2});
+    resumed->restore(checkpoint);
+    resumed->step(uninterrupted.steps() - resumed->steps());
+    EXPECT_TRUE(resumed->checkpoint() == end) << "resumed at step " << step;
+  }
+}
+
 // Also a step before, at and after a look that wakes all, and while they are kept awake.
 TEST(Sleep, ALevelThatWakesAllGoesOnBitForBitFromAnyStep) {
   EngineSettings settings = polygon_settings(1, true);
   settings.sleep.wake_levels = 1e-4;
   auto engine = polygon_box(settings, 8, 5);
   engine->step(29950);
-  std::vector<std::pair<long, std::string>> checkpoints;
+  Checkpoints checkpoints;
   int most_asleep = 0, most_awake = 0;
   for (int k = 0; k < 160; ++k) {
     engine->step(k % 2 == 0 ? 49 : 1);
@@ -396,18 +413,8 @@ TEST(Sleep, ALevelThatWakesAllGoesOnBitForBitFromAnyStep) {
   }
   EXPECT_GT(most_asleep, 20);
   EXPECT_GT(most_awake, 35) << "a level wakes all that slept";
-  const long end = engine->steps() + 1500;
   engine->step(1500);
-  const std::string uninterrupted = engine->checkpoint();
-  for (const auto& [step, checkpoint] : checkpoints) {
-    auto resumed = make_engine(settings);
-    resumed->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
-    resumed->add_wall({"left", {0, 0, 0}, {1, 0, 0}, 0.2});
-    resumed->add_wall({"right", {8 * 0.023, 0, 0}, {-1, 0, 0}, 0.2});
-    resumed->restore(checkpoint);
-    resumed->step(end - resumed->steps());
-    EXPECT_TRUE(resumed->checkpoint() == uninterrupted) << "resumed at step " << step;
-  }
+  expect_the_same_when_resumed(checkpoints, settings, *engine);
 }
 
 TEST(Sleep, GravityWakesAll) {
@@ -430,7 +437,7 @@ TEST(Sleep, AnImpactOnSleepersGoesOnBitForBitFromAnyStep) {
   NewGrain falls = polygon_grain(random, 0.09, 0.16);
   falls.vy = -2;
   engine->add(falls);
-  std::vector<std::pair<long, std::string>> checkpoints;
+  Checkpoints checkpoints;
   int most_awake = 0;
   for (int k = 0; k < 250; ++k) {
     engine->step(7);
@@ -438,18 +445,8 @@ TEST(Sleep, AnImpactOnSleepersGoesOnBitForBitFromAnyStep) {
     most_awake = std::max(most_awake, engine->measure().awake);
   }
   EXPECT_GT(most_awake, 5) << "the impact wakes sleepers";
-  const long end = engine->steps() + 300;
   engine->step(300);
-  const std::string uninterrupted = engine->checkpoint();
-  for (const auto& [step, checkpoint] : checkpoints) {
-    auto resumed = make_engine(settings);
-    resumed->add_wall({"floor", {0, 0, 0}, {0, 1, 0}, 0.5});
-    resumed->add_wall({"left", {0, 0, 0}, {1, 0, 0}, 0.2});
-    resumed->add_wall({"right", {8 * 0.023, 0, 0}, {-1, 0, 0}, 0.2});
-    resumed->restore(checkpoint);
-    resumed->step(end - resumed->steps());
-    EXPECT_TRUE(resumed->checkpoint() == uninterrupted) << "resumed at step " << step;
-  }
+  expect_the_same_when_resumed(checkpoints, settings, *engine);
 }
 
 TEST(Sleep, PouringGivesTheSameBitsOnAnyThreadsAndAfterRestarts) {
