@@ -1,4 +1,4 @@
-// What sleepers hide of the load of the levels of a packing.
+// Sleepers hide a part of the load of the levels of a packing: how much.
 #pragma once
 #include <algorithm>
 #include <cmath>

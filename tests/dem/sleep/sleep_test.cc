@@ -368,8 +368,8 @@ TallColumn tall_column(double wake_levels) {
   return out;
 }
 
-// What each block may hide of its own load adds up from block to block. So the levels are asked as
-// well, and all wake when one misses too much of the weight above it. In the end they sleep.
+// Residuals that each block may hide add up from block to block. So the levels are asked as well,
+// and all wake when one misses too much of the weight above it. In the end they sleep.
 TEST(Sleep, LoadHiddenByManyReachesTheFloorOfATallColumn) {
   const TallColumn unasked = tall_column(1e3), asked = tall_column(0.0075);
   EXPECT_GT(unasked.hidden, 0.03);
@@ -381,7 +381,7 @@ TEST(Sleep, LoadHiddenByManyReachesTheFloorOfATallColumn) {
 
 using Checkpoints = std::vector<std::pair<long, std::string>>;  // with their steps
 
-/// Of a box of eight columns, which has gone on to `uninterrupted`.
+/// The checkpoints are of a box of eight columns, which has gone on to `uninterrupted`.
 void expect_the_same_when_resumed(const Checkpoints& checkpoints, const EngineSettings& settings,
                                   const Engine& uninterrupted) {
   const std::string end = uninterrupted.checkpoint();

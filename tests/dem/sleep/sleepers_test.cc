@@ -246,7 +246,7 @@ TEST(Sleepers, HideAShareOfTheWeightAboveALevel) {
   EXPECT_NEAR(share({{0, 1, -0.3}, {1, 1, 0.3}, {2, 1, 0}}), 0.15, 1e-15);
   // Too much is passed on as well.
   EXPECT_NEAR(share({{0, 1, 0}, {1, 1, -0.3}}), 0.3, 1e-15);
-  // What carries less than a twentieth of the whole is not asked.
+  // A level that carries less than a twentieth of the whole is not asked.
   EXPECT_NEAR(share({{1, 0.04, 0.04}, {0, 0.96, 0}}), 0.04, 1e-15);
   EXPECT_NEAR(share({{1, 0.06, 0.04}, {0, 0.94, 0}}), 0.04 / 0.06, 1e-12);
   // Grains at one height are one level, in any order.
